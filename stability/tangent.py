@@ -1,0 +1,188 @@
+"""The paper's matrices as reductions of the plane-wave pencil: D, its truncation D', and its leading part M.
+
+Unknowns under a constraint (E = 0, here the pressure) are eliminated. Where the constraint sees them (P1.1) this is
+the Schur complement, D = C - i B xi^T/(epsilon xi^2)  (P3). Where it does not (I7.1) it is the projection
+D = (1 - B xi^T/(B.xi)) C  (L3.1), whose zero eigenvalue belongs to no disturbance.
+
+Numbers are not computed from those 2 x 2 entries. `Pair` and `Single` hold what the eigenvalues need in powers of
+s = i|xi|, for a wave along the x axis of its own frame (chi, tau): closures are frame-indifferent, so the base state is
+turned instead. There A = [[a, b], [b, d]], and identities such as A:A = 1 are applied *before* two terms can cancel in
+floating point: Det M comes out as mu^2 d^2/2 |xi|^4 and not as a difference.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, expand, eye, fraction, rem, together, zeros
+from sympy import factor as factored
+
+from stability.closures.base import Closure
+from stability.flows.base import Flow
+from stability.linearise import letter_gradients, pencil, state_letters
+from stability.symbols import gradient
+
+MATRICES = ("full", "truncated", "leading")  # D, D', M
+WAVE = (1, 0)  # the direction of the wave in its own frame
+Series = dict[int, Expr]  # {n: coefficient of s^n}, s = i|xi|
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two modes: trace, determinant and discriminant ((D11 - D22)/2)^2 + D12 D21 of D."""
+
+    trace: Series
+    determinant: Series
+    discriminant: Series
+
+
+@dataclass(frozen=True)
+class Single:
+    """One mode: ``lambda = regular(s) - numerator(s)/denominator(s)``, the denominator linear in s."""
+
+    regular: Series
+    numerator: Series
+    denominator: Series
+
+
+def blocks(closure: Closure, matrix: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    """Return C, B, row and corner of ``L = [[C, B], [row, corner]]``: evolving fields first, constrained ones last."""
+    e = [i for i, on in enumerate(closure.evolves) if on]
+    c = [i for i, on in enumerate(closure.evolves) if not on]
+    return matrix[e, e], matrix[e, c], matrix[c, e], matrix[c, c]
+
+
+def uniform(closure: Closure, expression: Expr) -> Expr:
+    """Return the expression without inertia and without gradients of the base state, as (P7) has it."""
+    gone = {s for c in closure.q for s in (c, *gradient(c))}
+    gone |= {s for letter in state_letters(closure) for s in gradient(letter)}
+    return expression.subs(dict.fromkeys(gone, 0))
+
+
+def tangent(closure: Closure, xi: tuple, matrix: str = "full") -> ImmutableMatrix:
+    """Return D (L3.1, P3), D' (P7) or M (P4) for the wavevector ``xi``, in the closure's letters.
+
+    Nothing is expanded: the entries stay as short as the reduction makes them.
+    """
+    L = pencil(closure).L(xi)
+    if matrix != "full":
+        L = L.applyfunc(lambda e: uniform(closure, e))
+    C, B, row, corner = blocks(closure, L)
+    if corner.is_zero_matrix:
+        return ImmutableMatrix((eye(C.rows) - B * row / (row * B)[0]) * C)  # (L3.1)
+    if matrix == "leading":
+        return ImmutableMatrix(C)  # (P4): the constraint acts at O(1)
+    return ImmutableMatrix(C - B * row / corner[0].factor())  # (P3)
+
+
+def on_flow(closure: Closure, flow: Flow, matrix: ImmutableMatrix) -> ImmutableMatrix:
+    """Return a tangent matrix with every letter written out on a flow: long, and not meant for evaluation."""
+    letters = {**closure.letters, **letter_gradients(closure)}
+    for definitions in (letters, flow.jet(), flow.letters):
+        for letter, definition in reversed(list(definitions.items())):
+            matrix = matrix.subs(letter, definition)
+    return matrix
+
+
+def product(one: Series, other: Series) -> Series:
+    """Return the product of two series."""
+    result: Series = {}
+    for i, a in one.items():
+        for j, b in other.items():
+            result[i + j] = result.get(i + j, 0) + a * b
+    return result
+
+
+def combined(*terms: tuple[Expr, Series]) -> Series:
+    """Return the linear combination of series, without the coefficients that vanish."""
+    result: Series = {}
+    for factor, series in terms:
+        for n, coefficient in series.items():
+            result[n] = result.get(n, 0) + factor * coefficient
+    return {n: c for n, c in result.items() if c != 0}
+
+
+def entry(series: dict[int, Matrix], i: int, j: int) -> Series:
+    """Return one entry of a series of matrices."""
+    return {n: m[i, j] for n, m in series.items() if m[i, j] != 0}
+
+
+def frame_series(closure: Closure, matrix: str) -> dict[int, Matrix]:
+    """Return the series of L for a wave along x in its own frame, the Doppler shift -i u.xi left out."""
+    series = pencil(closure).series(WAVE)
+    doppler = Matrix(series[1]).diff(closure.q[0])
+    if doppler != -pencil(closure).E:
+        raise ValueError(
+            f"closure {closure.name} is not Galilean invariant: -i u.xi does not merely shift the frequency"
+        )
+    rest = dict.fromkeys(closure.q[:2], 0)
+    series = {n: m.subs(rest) for n, m in series.items()}
+    if matrix == "full":
+        return series
+    return {n: m.applyfunc(lambda e: uniform(closure, e)) for n, m in series.items()}
+
+
+@cache
+def reduced_form(closure: Closure, matrix: str = "full") -> Pair | Single:
+    """Return what the eigenvalues of D, D' or M need, in powers of s = i|xi|."""
+
+    def reduced(expression: Expr) -> Expr:
+        numerator, denominator = fraction(together(expression))
+        for letter, vanishing in closure.relations:
+            numerator = rem(expand(numerator), vanishing, letter)
+        return factored(numerator / denominator)
+
+    L = {n: blocks(closure, m) for n, m in frame_series(closure, matrix).items()}
+    C, B, row = ({n: b[i] for n, b in L.items() if not b[i].is_zero_matrix} for i in range(3))
+    corner = {n: b[3][0] for n, b in L.items() if not b[3].is_zero_matrix}
+    if sum(closure.evolves) != 2 or len(closure.evolves) != 3 or set(row) != {1} or row[1][1] != 0:
+        raise ValueError(f"closure {closure.name}: closed forms exist for two velocities and one constraint")
+    if not corner:
+        return single(C, B, reduced)
+    if set(corner) != {2}:
+        raise ValueError(f"closure {closure.name}: the constraint must see its unknown through a Laplacian")
+    D = dict(C)  # (P3), order by order
+    for n, b in B.items():
+        if matrix != "leading":
+            D[n - 1] = D.get(n - 1, zeros(2, 2)) - b * row[1] / corner[2]
+    return pair(D, reduced)
+
+
+def parity(series: Series, odd: int) -> Series:
+    """Return the terms of odd or of even order."""
+    return {n: c for n, c in series.items() if n % 2 == odd}
+
+
+def pair(D: dict[int, Matrix], reduced) -> Pair:
+    """Return trace, determinant and discriminant of a 2 x 2 series.
+
+    In the determinant, even times even holds no gradient of a letter: it is short enough to expand, and it is where
+    terms cancel; odd times odd is left as it stands.
+    """
+    D = {n: m.applyfunc(reduced) if n % 2 == 0 else m for n, m in D.items()}
+    D11, D12, D21, D22 = (entry(D, i, j) for i in (0, 1) for j in (0, 1))
+    determinant = [
+        combined((1, product(parity(D11, i), parity(D22, j))), (-1, product(parity(D12, i), parity(D21, j))))
+        for i, j in ((0, 0), (0, 1), (1, 0), (1, 1))
+    ]
+    determinant[0] = {n: reduced(c) for n, c in determinant[0].items()}
+    half_gap = combined((Rational(1, 2), D11), (-Rational(1, 2), D22))
+    return Pair(
+        trace=combined((1, D11), (1, D22)),
+        determinant=combined(*((1, part) for part in determinant)),
+        discriminant=combined((1, product(half_gap, half_gap)), (1, product(D12, D21))),
+    )
+
+
+def single(C: dict[int, Matrix], B: dict[int, Matrix], reduced) -> Single:
+    """Return ``C_tt - (B_t/B_c) C_ct`` with B_t/B_c split into its limit at large |xi| and the rest.
+
+    The constraint leaves only disturbances along tau; the left vector (-B_t/B_c, 1) removes the pressure. This is
+    Tr D (L4) without the spurious zero eigenvalue.
+    """
+    B_c, B_t = entry(B, 0, 0), entry(B, 1, 0)
+    limit = B_t.get(1, Integer(0)) / B_c[1]
+    C_ct, C_tt = entry(C, 0, 1), entry(C, 1, 1)
+    regular = combined((1, C_tt), (-limit, C_ct))
+    regular[2] = reduced(regular[2])
+    rest = combined((1, {0: B_t.get(0, Integer(0))}), (-limit, {0: B_c.get(0, Integer(0))}))
+    return Single(regular=regular, numerator=product(rest, C_ct), denominator=B_c)
