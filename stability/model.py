@@ -1,0 +1,238 @@
+"""A closure on a flow, compiled: from a point and a direction of waves to the coefficients of their eigenvalues.
+
+The base state is turned into each wave's own frame (chi, tau), where one set of generated expressions serves every
+direction. That needs a frame-indifferent closure, which a test holds for each registered one.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from stability import codegen, spectrum
+from stability.arithmetic import NUMPY, Arithmetic, cosine_sine
+from stability.closures import CLOSURES
+from stability.errors import SceneError
+from stability.flows import FLOWS
+from stability.parameters import Parameter, merged, problems, radians, to_si
+
+MATRICES = ("full", "truncated", "leading")  # D (P3), D' (P7), M (P4)
+
+
+def check_waves(wavenumber: np.ndarray, wave_angle: np.ndarray) -> None:
+    """Raise `SceneError` unless the waves can be evaluated."""
+    bad = wavenumber[~(np.isfinite(wavenumber) & (wavenumber > 0))]
+    if bad.size:
+        raise SceneError(
+            f"wavenumber = {bad.flat[0]:g} 1/m lies outside (0, inf) 1/m: it is the modulus of the wavevector, "
+            "and a disturbance without wavelength has no direction"
+        )
+    if not np.all(np.isfinite(wave_angle)):
+        raise SceneError("wave_angle holds values that are not finite: give degrees")
+
+
+def unknown_matrix(matrix: Any) -> str:
+    """Return the sentence that names the matrices there are."""
+    return f"matrix = {matrix!r} is unknown: use one of {', '.join(MATRICES)}"
+
+
+def rotated(tensor: Any, c: Any, s: Any) -> Any:
+    """Return the components of a nested tensor in axes turned by the angle with cosine ``c`` and sine ``s``."""
+    if not isinstance(tensor, tuple):
+        return tensor
+    x, y = (rotated(part, c, s) for part in tensor)
+    return combine(x, y, c, s), combine(x, y, -s, c)
+
+
+def combine(x: Any, y: Any, c: Any, s: Any) -> Any:
+    """Return ``c x + s y`` for nested tensors of one shape."""
+    if isinstance(x, tuple):
+        return tuple(combine(a, b, c, s) for a, b in zip(x, y, strict=True))
+    return c * x + s * y
+
+
+@dataclass(frozen=True)
+class Model:
+    """The generated functions of a closure and of a flow, in one arithmetic ."""
+
+    closure: Any
+    flow: Any
+    arithmetic: Arithmetic = NUMPY
+
+    @cached_property
+    def _closure(self) -> dict:
+        return codegen.load(CLOSURES, self.closure)
+
+    @cached_property
+    def _flow(self) -> dict:
+        return codegen.load(FLOWS, self.flow)
+
+    @cached_property
+    def _functions(self) -> tuple[dict, dict]:
+        return self._closure["build"](self.arithmetic), self._flow["build"](self.arithmetic)
+
+    @property
+    def closure_name(self) -> str:
+        """The closure's word."""
+        return self._closure["NAME"]
+
+    @property
+    def flow_name(self) -> str:
+        """The flow's word."""
+        return self._flow["NAME"]
+
+    @property
+    def modes(self) -> int:
+        """How many eigenvalues a wave has: 1 under a constraint that does not see the pressure, else 2."""
+        return 2 if self._closure["FORM"] == "Pair" else 1
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Return the records of every parameter of closure and flow, by word."""
+        return merged(self._closure["PARAMETERS"], self._flow["PARAMETERS"])
+
+    @property
+    def point(self) -> dict[str, Parameter]:
+        """Return the records of the coordinates that choose a point of the flow."""
+        return merged(self._flow["POINT"])
+
+    @property
+    def axis(self) -> str:
+        """What wave angle 0 means."""
+        return self._flow["AXIS"]
+
+    def problems(self, parameters: Mapping, point: Mapping) -> list[str]:
+        """Return everything that is wrong with parameters and point, one sentence each."""
+        found = problems(self.parameters, parameters, "[parameters]")
+        for name in point:
+            if name not in self.point:
+                found.append(
+                    f"point {name} is unknown: {self.flow_name} has {', '.join(self.point) or 'no coordinates'}"
+                )
+        for name, record in self.point.items():
+            if name not in point:
+                found.append(f"point {name} is missing: it is {record.described}, in {record.range}")
+            else:
+                found += filter(
+                    None, {record.problem(v, "point") for v in np.ravel(np.asarray(point[name], dtype=object))}
+                )
+        if not found:
+            constants, place = self._si(parameters, point)
+            for stage in ("conditions", "letter_conditions"):
+                holds = self._functions[1][stage](place, constants)
+                found += [f"{text} ({self._given(parameters, point)})" for text, ok in holds if not np.all(ok)]
+                if found:
+                    break
+        return found
+
+    def _given(self, parameters: Mapping, point: Mapping) -> str:
+        return ", ".join(f"{w} = {v}" for w, v in {**parameters, **point}.items())
+
+    def _si(self, parameters: Mapping, point: Mapping) -> tuple[dict, dict]:
+        number, pi = self.arithmetic.number, self.arithmetic.pi
+        place = {w: number(point[w]) for w in self.point}
+        place |= {w: radians(place[w], pi) for w, r in self.point.items() if r.unit == "deg"}
+        return to_si(self.parameters, parameters, number, pi), place
+
+    def base(self, parameters: Mapping, point: Mapping) -> "Base":
+        """Return the base state at a point, or raise `SceneError` with every problem.
+
+        Parameters
+        ----------
+        parameters : words of closure and flow, SI units, angles in degrees
+        point : coordinates of the flow's point (angles in degrees); arrays of one shape make an array of points
+        """
+        if found := self.problems(parameters, point):
+            raise SceneError(*found)
+        constants, place = self._si(parameters, point)
+        closure, flow = self._functions
+        jets = flow["state"](place, constants)
+        state = tuple(
+            tuple(zip(*(jets[c] for c in f), strict=True)) if isinstance(f, tuple) else jets[f]
+            for f in self._closure["FIELDS"]
+        )
+        return Base(self, constants, state, flow["body_force"](place, constants), flow["letters"](place, constants))
+
+
+@dataclass(frozen=True)
+class Base:
+    """A base state at one point (or an array of points): the jet of every field, in the flow's local frame."""
+
+    model: Model
+    parameters: dict
+    state: tuple
+    body_force: tuple
+    flow_letters: dict
+
+    def at(self, index: Any) -> "Base":
+        """Return the base states at some of an array of points, in that order."""
+
+        def taken(tensor: Any) -> Any:
+            if isinstance(tensor, tuple):
+                return tuple(map(taken, tensor))
+            return tensor[index] if np.ndim(tensor) else tensor
+
+        return replace(self, state=taken(self.state))
+
+    def letters(self) -> dict:
+        """Return the closure's letters (k, N = ||V||, A, mu, ...) at the point."""
+        return self.model._functions[0]["letters"](self.state, self.parameters)
+
+    def imbalance(self) -> tuple:
+        """Return div F - S of each balance law: how far the base state is from a steady solution."""
+        return self.model._functions[0]["imbalance"](self.state, self.parameters, self.body_force)
+
+    def pencil(self) -> tuple:
+        """Return L2[a][b], L1[a] and L0 of `linearise.pencil`, in the flow's local frame."""
+        return self.model._functions[0]["pencil"](self.state, self.parameters)
+
+    def form(self, wave_angle: Any, matrix: str = "full") -> "Form":
+        """Return the reduced form of D, D' or M for waves in the given direction.
+
+        Parameters
+        ----------
+        wave_angle : degrees from the flow's axis; an array broadcasts against the points
+        matrix : "full" (D), "truncated" (D', P7) or "leading" (M, P4)
+        """
+        if matrix not in MATRICES:
+            raise SceneError(unknown_matrix(matrix))
+        c, s = cosine_sine(wave_angle, self.model.arithmetic)
+        turned = tuple(tuple(rotated(tensor, c, s) for tensor in jet) for jet in self.state)
+        coefficients = self.model._functions[0][matrix](turned, self.parameters)
+        along = turned[0][0][0] if matrix == "full" else 0
+        return Form(coefficients, along, self.model.arithmetic)
+
+
+@dataclass(frozen=True)
+class Form:
+    """The coefficients of the eigenvalues of a wave in powers of i|xi|, and the flow's speed along the wave."""
+
+    coefficients: dict
+    speed: Any
+    arithmetic: Arithmetic = NUMPY
+
+    def _each(self, change: Callable) -> "Form":
+        parts = {part: {n: change(c) for n, c in series.items()} for part, series in self.coefficients.items()}
+        return replace(self, coefficients=parts, speed=change(self.speed))
+
+    def filled(self, size: int) -> "Form":
+        """Return the form with every coefficient an array over the directions, constants too."""
+        return self._each(lambda c: np.broadcast_to(np.asarray(c, dtype=float), (size,)))
+
+    def column(self) -> "Form":
+        """Return the form of many directions with a trailing axis for wavenumbers."""
+        return self._each(lambda c: c[:, None] if np.ndim(c) else c)
+
+    def rows(self, index: Any) -> "Form":
+        """Return the form at some of its directions."""
+        return self._each(lambda c: c[index] if np.ndim(c) else c)
+
+    def eigenvalues(self, wavenumber: Any) -> tuple:
+        """Return the eigenvalues (1/s), Doppler shift included."""
+        if "trace" in self.coefficients:
+            found: tuple = spectrum.pair(self.coefficients, wavenumber, self.arithmetic)
+        else:
+            found = (spectrum.single(self.coefficients, wavenumber),)
+        return tuple(e - 1j * (self.speed * wavenumber) for e in found)
