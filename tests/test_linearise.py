@@ -21,8 +21,8 @@ def nonlinear_residual(closure, values):
 @pytest.mark.parametrize("name", CLOSURES)
 @pytest.mark.parametrize("seed", range(3))
 def test_the_pencil_is_the_derivative_of_the_nonlinear_residual(name, seed):
-    # A plane wave of amplitude h adds h a_i (1, i xi, -xi xi) to the jet of field i; the residual is analytic, so its complex
-    # derivative is the central difference, here with 60 digits and h = 1e-20: truncation 1e-40.
+    # A plane wave of amplitude h adds h a_i (1, i xi, -xi xi) to the jet of field i; the residual is analytic, so its
+    # complex derivative is the central difference, here with 60 digits and h = 1e-20: truncation 1e-40.
     closure, rng = CLOSURES[name], np.random.default_rng(seed)
     base, jet, constants = random_base(name, rng)
     xi = [mpf(v) for v in rng.normal(size=2) * 10.0 ** rng.uniform(-2, 2)]
@@ -74,7 +74,8 @@ def test_the_pencil_is_real_in_powers_of_i_xi(name):
 
 
 def test_the_hopper_jet_agrees_with_derivatives_in_polar_coordinates():
-    # On the ray y = 0 the local x axis is the radius, so d/dx of u and p are radial derivatives of the printed formulas.
+    # On the ray y = 0 the local x axis is the radius, so d/dx of u and p are radial derivatives of the printed
+    # formulas.
     flow, rho, angle = FLOWS["radial_hopper"], symbol("rho"), symbol("angle")
     given = {"varphi": 0.6, "varphi_w": 0.15, "theta_w": 0.3, "r_0": 0.5, "r_1": 1.5, "g": 9.81, "theta": 0.1}
     values = {symbol(n): v for n, v in given.items()} | {r: 0.9}

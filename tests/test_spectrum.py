@@ -56,7 +56,9 @@ def test_the_pencils_qz_eigenvalues_agree(name):
         xi = q * np.array([np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))])
         L = L0 + 1j * np.einsum("a,aij->ij", xi, L1) - np.einsum("a,b,abij->ij", xi, xi, L2)
         size = np.abs(L[:2, :2]).max()
-        L[2] *= size / np.abs(L[2, :2]).max()  # rows and columns of the constraint may be scaled at will: E is zero there
+        L[2] *= (
+            size / np.abs(L[2, :2]).max()
+        )  # rows and columns of the constraint may be scaled at will: E is zero there
         L[:, 2] *= size / np.abs(L[:2, 2]).max()
         referee = spectrum.pencil_eigenvalues(E, L)
         found = np.array(base.form(angle).eigenvalues(q))
