@@ -9,7 +9,7 @@ from sympy.printing.str import StrPrinter
 
 from stability.closures.base import Closure
 from stability.flows.base import Flow
-from stability.linearise import imbalance, letter_gradients, pencil
+from stability.linearise import imbalance, letter_gradients, letters, pencil
 from stability.parameters import Parameter
 from stability.symbols import body_force, gradient, hessian
 from stability.tangent import MATRICES, reduced_form
@@ -114,14 +114,14 @@ def series_text(series: Mapping[int, Expr], name: str) -> tuple[list[tuple[str, 
 
 def closure_source(closure: Closure) -> str:
     """Return the generated module of a closure."""
-    letters = [(str(s), e) for s, e in closure.letters.items()]
+    named_letters = [(str(s), e) for s, e in letters(closure).items()]
     gradients = [(str(s), e) for s, e in letter_gradients(closure).items()]
     unpack = [unpacking(closure.fields), *parameter_lines(closure.parameters)]
 
     def staged(results: list[tuple[str, Expr]]) -> list:
         slopes = needed(gradients, symbols_of(e for _, e in results))
-        named = needed(letters, symbols_of(e for _, e in (*results, *slopes)))
-        return [named, slopes, results]
+        own = needed(named_letters, symbols_of(e for _, e in (*results, *slopes)))
+        return [own, slopes, results]
 
     functions = []
     for matrix in MATRICES:
@@ -155,8 +155,8 @@ def closure_source(closure: Closure) -> str:
             nested([name for name, _ in balance]),
         )
     )
-    values = "{" + ", ".join(f"{s!r}: {s}" for s, _ in letters) + "}"
-    functions.append(function("letters", "state, parameters", unpack, [letters], values))
+    values = "{" + ", ".join(f"{s!r}: {s}" for s, _ in named_letters) + "}"
+    functions.append(function("letters", "state, parameters", unpack, [named_letters], values))
     return module(
         closure,
         functions,
@@ -168,21 +168,23 @@ def closure_source(closure: Closure) -> str:
 
 def flow_source(flow: Flow) -> str:
     """Return the generated module of a flow."""
-    letters = [(str(s), e) for s, e in flow.letters.items()]
+    constants = [(str(s), e) for s, e in flow.letters.items()]
     jets = [(str(s), e) for s, e in flow.jet().items()]
     unpack = [*parameter_lines(flow.parameters), *(f"{r.symbol} = point[{r.word!r}]" for r in flow.point)]
     state = "{" + ", ".join(f"{str(f)!r}: {nested(jet_names(f))}" for f in flow.fields) + "}"
     force = [(str(s), e) for s, e in zip(body_force, flow.body_force, strict=True)]
-    values = "{" + ", ".join(f"{s!r}: {s}" for s, _ in letters) + "}"
+    values = "{" + ", ".join(f"{s!r}: {s}" for s, _ in constants) + "}"
     # Letters such as Psi_w only exist (asin of at most one) where the conditions on the bare parameters hold.
     bare = [c for c in flow.conditions if not c[0].free_symbols & flow.letters.keys()]
     derived = [c for c in flow.conditions if c not in bare]
     functions = [
-        function("state", "point, parameters", unpack, [needed(letters, symbols_of(e for _, e in jets)), jets], state),
+        function(
+            "state", "point, parameters", unpack, [needed(constants, symbols_of(e for _, e in jets)), jets], state
+        ),
         function("body_force", "point, parameters", unpack, [force], nested([s for s, _ in force])),
-        function("letters", "point, parameters", unpack, [letters], values),
+        function("letters", "point, parameters", unpack, [constants], values),
         function("conditions", "point, parameters", unpack, [], conditions(bare)),
-        function("letter_conditions", "point, parameters", unpack, [letters], conditions(derived)),
+        function("letter_conditions", "point, parameters", unpack, [constants], conditions(derived)),
     ]
     return module(flow, functions, POINT=flow.point, AXIS=flow.axis)
 

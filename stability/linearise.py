@@ -9,23 +9,26 @@ Exact about any smooth background: every gradient of the base state is kept. Wit
 the matrices are real.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
 from sympy import Expr, I, ImmutableMatrix, Matrix, Symbol, diag, expand, solve, zeros
 
 from stability.closures.base import Closure
-from stability.symbols import gradient, hessian
+from stability.symbols import gradient, hessian, symbol
 
 
 @dataclass(frozen=True)
 class Moduli:
-    """Derivatives of flux and supply; ``Fq[a]``, ``Sq`` and ``Sg[b]`` are n x n, ``Fg[a][b]`` too."""
+    """Derivatives of flux and supply, ``Fq[a]``, ``Fg[a][b]``, ``Sq``, ``Sg[b]``, all n x n, and their letters."""
 
     Fq: tuple
     Fg: tuple
     Sq: Matrix
     Sg: tuple
+    letters: dict
+    patterns: tuple
 
 
 @dataclass(frozen=True)
@@ -48,51 +51,63 @@ class Pencil:
         return sum((I**n * matrix for n, matrix in self.series(xi).items()), zeros(*self.E.shape))
 
 
-def state_letters(closure: Closure) -> list[Symbol]:
-    """Return the letters that vary along a base state, in order of definition (k, for one, does not)."""
-    varying = {*closure.q, *closure.g}
-    found = []
-    for letter, definition in closure.letters.items():
-        if definition.free_symbols & varying:
-            varying.add(letter)
-            found.append(letter)
-    return found
+class Rewriter:
+    """Rewrites derivatives of the raw state in letters, which keeps everything that follows short.
 
-
-class Letters:
-    """Rewrites derivatives of the raw state in the closure's letters, which keeps them short."""
+    The closure's own letters come first. What they leave over, or everything in a closure that declares none, gets the
+    letters m_0, m_1, ..., one for each different entry that is not a polynomial in the raw state.
+    """
 
     def __init__(self, closure: Closure):
         self.raw = {*closure.q, *closure.g}
+        self.letters = dict(closure.letters)
         self.patterns, equations = [], []
-        for letter in state_letters(closure):
-            definition = closure.letters[letter]
+        for letter in varying(closure, self.letters):
+            definition = self.letters[letter]
             if definition.is_rational_function(*self.raw):  # such as A = V/||V||: solved for the raw state below
                 equations.append(letter - definition)
             else:  # such as ||V||, a square root: replaced wherever it stands
                 self.patterns.append((definition, letter))
-        # Any solution will do: where the letters do not fix the raw state, `rewritten` must not depend on the rest.
-        solved = solve(equations, [s for s in (*closure.q, *closure.g) if s in self.raw], dict=True)
+        # Any solution will do: what letters can express does not depend on the part of the raw state they leave open.
+        solved = solve(equations, [*closure.q, *closure.g], dict=True) if equations else []
         self.solution = solved[0] if solved else {}
 
-    def rewritten(self, expression: Expr) -> Expr:
-        """Return a derivative in letters where that is shorter than the raw state."""
-        short = expression.subs(self.patterns)
-        if short.is_polynomial(*self.raw):  # such as -u_x, the moduli of inertia: short as it is, in the paper's grad u
-            if not {s for _, s in self.patterns} & short.free_symbols:
-                return short
-        return expand(short.subs(self.solution))
+    def __call__(self, derivative: Expr) -> Expr:
+        """Return a derivative in letters, with a new letter where those there are cannot express it."""
+        short = derivative.subs(self.patterns)
+        if derivative.is_polynomial(*self.raw):  # such as -u_x, the moduli of inertia: short as it is
+            return derivative
+        in_letters = expand(short.subs(self.solution))
+        if not in_letters.free_symbols & self.raw:
+            return in_letters
+        for letter, definition in self.letters.items():
+            if definition == derivative:
+                return letter
+        letter = symbol(f"m_{sum(str(s).startswith('m_') for s in self.letters)}")
+        self.letters[letter] = derivative
+        return letter
+
+
+def varying(closure: Closure, letters: Mapping[Symbol, Expr]) -> list[Symbol]:
+    """Return the letters that vary along a base state, in order of definition (k, for one, does not)."""
+    known = {*closure.q, *closure.g}
+    found = []
+    for letter, definition in letters.items():
+        if definition.free_symbols & known:
+            known.add(letter)
+            found.append(letter)
+    return found
 
 
 @cache
 def moduli(closure: Closure) -> Moduli:
-    """Return the derivatives of flux and supply in the closure's letters."""
-    letters = Letters(closure)
+    """Return the derivatives of flux and supply in letters."""
+    rewritten = Rewriter(closure)
     q = Matrix(closure.q)
     g = [Matrix([gradient(c)[b] for c in closure.q]) for b in (0, 1)]
 
     def derivative(column: Matrix, by: Matrix) -> ImmutableMatrix:
-        return ImmutableMatrix(column.jacobian(by).applyfunc(letters.rewritten))
+        return ImmutableMatrix(column.jacobian(by).applyfunc(rewritten))
 
     F = [closure.flux[:, a] for a in (0, 1)]
     return Moduli(
@@ -100,7 +115,19 @@ def moduli(closure: Closure) -> Moduli:
         Fg=tuple(tuple(derivative(F[a], g[b]) for b in (0, 1)) for a in (0, 1)),
         Sq=derivative(closure.supply, q),
         Sg=tuple(derivative(closure.supply, g[b]) for b in (0, 1)),
+        letters=rewritten.letters,
+        patterns=tuple(rewritten.patterns),
     )
+
+
+def letters(closure: Closure) -> dict[Symbol, Expr]:
+    """Return ``{letter: definition}`` of every letter in the moduli, each in the raw state and earlier letters."""
+    return moduli(closure).letters
+
+
+def state_letters(closure: Closure) -> list[Symbol]:
+    """Return the letters that vary along a base state."""
+    return varying(closure, letters(closure))
 
 
 @cache
@@ -121,9 +148,8 @@ def along(closure: Closure, expression: Expr, axis: int) -> Expr:
 @cache
 def letter_gradients(closure: Closure) -> dict[Symbol, Expr]:
     """Return ``{symbol of d letter/dx_a: expression}`` in the letters and the second gradients of the state."""
-    letters = Letters(closure)
     return {
-        gradient(letter)[a]: along(closure, closure.letters[letter], a).subs(letters.patterns)
+        gradient(letter)[a]: along(closure, letters(closure)[letter], a).subs(moduli(closure).patterns)
         for letter in state_letters(closure)
         for a in (0, 1)
     }

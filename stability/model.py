@@ -18,6 +18,8 @@ from stability.errors import SceneError
 from stability.flows import FLOWS
 from stability.parameters import Parameter, merged, problems, radians, to_si
 
+# A flow that satisfies a constraint analytically misses it by a few roundings, some 1e-16 of the velocity gradient.
+CONSTRAINT_RTOL = 1e-12
 MATRICES = ("full", "truncated", "leading")  # D (P3), D' (P7), M (P4)
 
 
@@ -153,7 +155,21 @@ class Model:
             tuple(zip(*(jets[c] for c in f), strict=True)) if isinstance(f, tuple) else jets[f]
             for f in self._closure["FIELDS"]
         )
-        return Base(self, constants, state, flow["body_force"](place, constants), flow["letters"](place, constants))
+        base = Base(self, constants, state, flow["body_force"](place, constants), flow["letters"](place, constants))
+        if self.modes == 1:
+            self._check_constraint(base)
+        return base
+
+    def _check_constraint(self, base: "Base") -> None:
+        """Refuse a flow that breaks a constraint exactly imposed: its tangent matrix would use identities that do not hold."""
+        (_, gradient, _), miss = base.state[0], base.imbalance()[-1]
+        size = sum(abs(g) for row in gradient for g in row)
+        worst = np.max(np.asarray(abs(miss) / size, dtype=float))
+        if worst > CONSTRAINT_RTOL:
+            raise SceneError(
+                f"{self.closure_name} imposes its constraint exactly, but {self.flow_name} misses it by {worst:.3g} of the "
+                "velocity gradient: choose a flow with div u = 0 (delta = 0), or a closure without the constraint"
+            )
 
 
 @dataclass(frozen=True)

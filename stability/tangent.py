@@ -18,7 +18,7 @@ from sympy import factor as factored
 
 from stability.closures.base import Closure
 from stability.flows.base import Flow
-from stability.linearise import letter_gradients, pencil, state_letters
+from stability.linearise import letter_gradients, letters, pencil, state_letters
 from stability.symbols import gradient
 
 MATRICES = ("full", "truncated", "leading")  # D, D', M
@@ -76,8 +76,8 @@ def tangent(closure: Closure, xi: tuple, matrix: str = "full") -> ImmutableMatri
 
 def on_flow(closure: Closure, flow: Flow, matrix: ImmutableMatrix) -> ImmutableMatrix:
     """Return a tangent matrix with every letter written out on a flow: long, and not meant for evaluation."""
-    letters = {**closure.letters, **letter_gradients(closure)}
-    for definitions in (letters, flow.jet(), flow.letters):
+    named = {**letters(closure), **letter_gradients(closure)}
+    for definitions in (named, flow.jet(), flow.letters):
         for letter, definition in reversed(list(definitions.items())):
             matrix = matrix.subs(letter, definition)
     return matrix

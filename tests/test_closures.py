@@ -5,7 +5,8 @@ from sympy import Matrix, Symbol, simplify
 
 from stability.closures import CLOSURES
 from stability.closures.base import Closure, norm
-from stability.closures.drucker_prager import PERTURBED, V, balance_laws, grad_u, stress, velocity
+from stability.closures.drucker_prager import PERTURBED, stress
+from stability.closures.plane_flow import V, grad_u, momentum_and_mass, velocity
 from stability.errors import SceneError
 from stability.linearise import state_letters
 from stability.symbols import k, p, symbol
@@ -62,4 +63,4 @@ def test_an_unknown_name_is_refused_with_the_nearest_one():
 def test_the_registry_reads_as_a_dict():
     assert len(CLOSURES) == 2 and "perturbed" in CLOSURES and "water" not in CLOSURES
     assert repr(CLOSURES) == "closures: rigid_plastic, perturbed"
-    assert balance_laws(velocity)["evolves"] == (1, 1, 0)
+    assert momentum_and_mass(stress, velocity)["evolves"] == (1, 1, 0)

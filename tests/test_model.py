@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 from stability.arithmetic import NUMPY
 from stability.closures import CLOSURES
+from stability.errors import SceneError
 from stability.model import Base, Model, rotated
 from tests.states import base_of, random_jet
 
@@ -121,3 +122,14 @@ def test_rotation_preserves_the_norm_of_a_tensor(rank):
     turned = np.array(rotated(nested(entries), 0.6, 0.8))
     assert_allclose(np.linalg.norm(turned), np.linalg.norm(entries), rtol=1e-14)
     assert NUMPY.number("2") == 2.0
+
+
+@pytest.mark.parametrize(
+    ("flow", "more"),
+    [("uniform_strain", {"delta": 0.3, "strain_rate": 1, "pressure": 1}), ("radial_hopper_compatible", None)],
+)
+def test_a_flow_that_breaks_an_exact_constraint_is_refused(perturbed_hopper, flow, more):
+    parameters = {"friction_angle": 34} | more if more else perturbed_hopper
+    point = {} if more else {"r": 1, "theta": 0}
+    with pytest.raises(SceneError, match="rigid_plastic imposes its constraint exactly"):
+        Model("rigid_plastic", flow).base(parameters, point)

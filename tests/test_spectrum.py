@@ -44,8 +44,7 @@ def test_float64_agrees_with_80_digits_over_random_states(name):
 
 @pytest.mark.parametrize("name", CLOSURES)
 def test_the_pencils_qz_eigenvalues_agree(name):
-    # The independent referee: the general pencil in the unturned frame, no reduction, no closed form. QZ is backward stable in
-    # ||L||, whose mass row and pressure column are scaled here to the size of the rest.
+    # The independent referee: the general pencil in the unturned frame, no reduction, no closed form.
     rng = np.random.default_rng(2)
     E = np.diag(CLOSURES[name].evolves)
     for _ in range(200):
