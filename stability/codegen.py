@@ -53,6 +53,12 @@ def opened(text: str, key: str) -> str | None:
     return source if text == sealed(source, key) else None
 
 
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
 def write_atomically(path: Path, content: bytes | memoryview) -> None:
     """Write a file so that a reader, or a second writer, only ever sees a whole one."""
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -60,6 +66,7 @@ def write_atomically(path: Path, content: bytes | memoryview) -> None:
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
+        os.chmod(temporary, 0o666 & ~_umask())  # mkstemp makes private files; others may read a result
         os.replace(temporary, path)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)

@@ -161,14 +161,14 @@ class Model:
         return base
 
     def _check_constraint(self, base: "Base") -> None:
-        """Refuse a flow that breaks a constraint exactly imposed: its tangent matrix would use identities that do not hold."""
+        """Refuse a flow that breaks an exact constraint: identities used in compiling would not hold."""
         (_, gradient, _), miss = base.state[0], base.imbalance()[-1]
         size = sum(abs(g) for row in gradient for g in row)
         worst = np.max(np.asarray(abs(miss) / size, dtype=float))
         if worst > CONSTRAINT_RTOL:
             raise SceneError(
-                f"{self.closure_name} imposes its constraint exactly, but {self.flow_name} misses it by {worst:.3g} of the "
-                "velocity gradient: choose a flow with div u = 0 (delta = 0), or a closure without the constraint"
+                f"{self.closure_name} imposes its constraint exactly, but {self.flow_name} misses it by {worst:.3g} "
+                "of the velocity gradient: choose a flow with div u = 0 (delta = 0), or a closure without the constraint"
             )
 
 

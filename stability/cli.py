@@ -1,0 +1,153 @@
+"""The command ``stability``. Only click is imported here: each command imports what it needs when it runs."""
+
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import click
+
+from stability import CLOSURES, FLOWS, __version__, manual
+from stability.errors import SceneError, StabilityError
+
+BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 2, 3, 130
+NARROW = 100  # columns of formulas where there is no terminal to ask
+
+
+class Commands(click.Group):
+    """Commands whose errors are sentences on standard error and an exit status, not tracebacks."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command."""
+        try:
+            return super().invoke(ctx)
+        except StabilityError as error:
+            for problem in getattr(error, "problems", ()) or (str(error),):
+                complain(problem)
+            ctx.exit(BAD_INPUT if isinstance(error, SceneError) else NUMERICAL_FAILURE)
+        except KeyboardInterrupt:
+            complain("interrupted: nothing was written")
+            ctx.exit(INTERRUPTED)
+
+
+def complain(problem: str) -> None:
+    """Print a sentence on standard error; click leaves out the colour where that is no terminal."""
+    plain = False if os.environ.get("NO_COLOR") else None
+    click.echo(click.style("error: ", fg="red", bold=True) + problem, err=True, color=plain)
+
+
+SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
+
+
+@click.group(cls=Commands, help=manual.ABOUT, context_settings=SETTINGS)
+@click.version_option(__version__, prog_name="stability", message="%(prog)s %(version)s")
+def main() -> None:
+    """Linear stability and well-posedness of granular flow."""
+
+
+@main.command(help=manual.RUN, short_help="Compute what a scene asks for, into a netCDF file.")
+@click.argument("scene", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="File to write.  [default: SCENE.nc, here]")
+@click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
+def run(scene: Path, output: Path | None, quiet: bool) -> None:
+    """Compute what SCENE asks for, write it as netCDF, and print a summary."""
+    from stability.scene import load_scene
+
+    output = writable(output or Path(f"{scene.stem}.nc"), scene)
+    checked = load_scene(scene)  # a bad scene is told before the libraries of results are loaded
+    from stability import results, runner
+
+    result = runner.run(checked, progress=not quiet)
+    try:
+        results.save(result, output)
+    except OSError as error:
+        raise SceneError(f"--output {output} cannot be written: {error.strerror}") from None
+    if not quiet:
+        click.echo(runner.summary(result))
+        click.echo(f'\nwrote {output}; to open it: import stability; ds = stability.open_results("{output}")')
+
+
+def writable(output: Path, scene: Path) -> Path:
+    """Return the path if a result can be written there, so that no run is lost for want of a place."""
+    if output.is_dir():
+        raise SceneError(f"--output {output} is a folder: name a file in it, such as {output / scene.stem}.nc")
+    if not output.parent.is_dir():
+        raise SceneError(f"--output {output}: there is no folder {output.parent}: make it, or choose another")
+    if not os.access(output.parent, os.W_OK):
+        raise SceneError(f"--output {output}: the folder {output.parent} cannot be written to: choose another")
+    if output.exists() and scene.exists() and output.samefile(scene):
+        raise SceneError(f"--output {output} is the scene itself: choose another name")
+    return output
+
+
+@main.command(name="list", short_help="List closures and flows with their parameters.")
+@click.argument("what", type=click.Choice(["closures", "flows"]), required=False)
+def list_(what: str | None) -> None:
+    """List the closures and the flows, with the parameters that a scene must give them.
+
+    Ranges are open: neither end is allowed. Angles are in degrees.
+    """
+    for registry in (CLOSURES, FLOWS):
+        if what in (None, f"{registry.kind}s"):
+            click.echo("\n".join(listing(registry)))
+
+
+def listing(registry: Any) -> Iterator[str]:
+    """Yield the lines that describe every entry of a registry."""
+    from stability import codegen
+
+    tables = {}
+    for name in registry:
+        module = codegen.load(registry, name)
+        words = {f"point.{r.word}": r for r in module.get("POINT", ())} | {r.word: r for r in module["PARAMETERS"]}
+        tables[name] = module, [(word, r.unit, f"({r.low:g}, {r.high:g})", r) for word, r in words.items()]
+    widths = [max(len(row[i]) for _, table in tables.values() for row in table) for i in range(3)]
+    for name, (module, table) in tables.items():
+        yield f'{registry.kind} = "{name}"'
+        yield f"  {module['TITLE']} [{module['SOURCE']}]"
+        if axis := module.get("AXIS"):
+            yield f"  wave_angle is measured from {axis}"
+        for *cells, record in table:
+            columns = "  ".join(f"{cell:<{width}}" for cell, width in zip(cells, widths, strict=True))
+            yield f"    {columns}  {record.meaning} ({record.source})"
+        yield ""
+
+
+@main.command(short_help="Print the tangent matrix of a closure.")
+@click.argument("closure")
+@click.option("--flow", help="Write the base state of this flow out in place of the letters (long).")
+@click.option("--matrix", type=click.Choice(["full", "truncated", "leading"]), default="full", show_default=True)
+@click.option("--format", "style", type=click.Choice(["text", "latex", "python"]), default="text", show_default=True)
+def derive(closure: str, flow: str | None, matrix: str, style: str) -> None:
+    """Derive the tangent matrix of CLOSURE and print it in the paper's letters.
+
+    full is D (L3.1, P3), truncated is D' (P7), leading is M (P4). xi_x and xi_y are the components of the wavevector. A
+    letter with one index more is a derivative: u_y is du/dy, A_xx_y is dA_xx/dy.
+    """
+    for registry, name in ((CLOSURES, closure), (FLOWS, flow)):
+        if name is not None:
+            registry.place(name)  # raises for an unknown one before SymPy is imported
+    from stability.api import tangent_matrix
+
+    found = tangent_matrix(closure, flow, matrix)
+    if style == "text":
+        letters = {} if flow else CLOSURES[closure].letters
+        click.echo("\n".join(formulas(found, letters)))
+    elif style == "latex":
+        from sympy import latex
+
+        click.echo(latex(found))
+    else:
+        click.echo(str(found))
+
+
+def formulas(matrix: Any, letters: dict) -> Iterator[str]:
+    """Yield a matrix entry by entry, folded to the width of the terminal, and the letters in it."""
+    from sympy import pretty
+
+    width = shutil.get_terminal_size((NARROW, 24)).columns
+    for i, j in ((i, j) for i in range(matrix.rows) for j in range(matrix.cols)):
+        # Letters stay in ASCII: Unicode has an x but no y as a subscript, so that A_xx_x and A_xx_y looked unlike.
+        yield f"[{i + 1}, {j + 1}] =\n{pretty(matrix[i, j], use_unicode=False, num_columns=width)}\n"
+    yield from (f"{letter} = {definition}" for letter, definition in letters.items())

@@ -1,0 +1,138 @@
+"""Whatever of a file has not the shape of a scene, in the words of a scene."""
+
+import json
+from collections.abc import Iterable
+from difflib import get_close_matches
+from typing import Any
+
+from pydantic import ValidationError
+
+from stability.scene.shape import (
+    MAX_SAMPLES,
+    Assumption,
+    GrowthMap,
+    Interval,
+    Layout,
+    Listed,
+    NeutralCurve,
+    PhaseDiagram,
+    Spaced,
+    Table,
+    Tolerance,
+)
+
+REQUESTS: dict[str, type[Table]] = {
+    "growth_map": GrowthMap,
+    "neutral_curve": NeutralCurve,
+    "phase_diagram": PhaseDiagram,
+}
+_TABLES: dict[Any, type[Table]] = {**REQUESTS, "<spaced>": Spaced, "<listed>": Listed, "tolerance": Tolerance}
+
+RANGE = '{ from = 1.0, to = 1e4, count = 300, spacing = "log" }, or a list'
+MEANING = {
+    "title": "one sentence for captions and reports",
+    "closure": "the rheology (stability list closures)",
+    "flow": "the base state (stability list flows)",
+    "parameters": 'the numbers printed in the paper, each alone or as { value = 34.0, why = "..." }',
+    "assumed": 'the numbers that are not printed, each as { value = 15.0, why = "..." }',
+    "request": "the table that says what is asked, with its kind",
+    "tolerance": "a table with growth and sign",
+    "kind": f"what is asked, one of {', '.join(REQUESTS)}",
+    "value": "a number in SI units, an angle in degrees, without quotes",
+    "why": 'the reason, as in { value = 15.0, why = "theta_w is not given" }',
+    "point": "where the flow is sampled, as in point = { r = 1.0, theta = 0.0 }",
+    "wavenumber": f"the wavenumbers in 1/m, as in {RANGE}",
+    "wave_angle": "the directions in degrees, as in { from = 0.0, to = 360.0, count = 1441 }, or a list",
+    "delta": "the rates of dilation, as in { from = -0.5, to = 1.2, count = 341 }, or a list",
+    "scaled_wavenumber": f"the values of Lambda epsilon, as in {RANGE}",
+    "from": "the lower end, a number",
+    "to": "the upper end, a number",
+    "count": f"the number of samples, a whole number from 2 to {MAX_SAMPLES}",
+    "spacing": "the spacing of the samples",
+    "matrix": "the tangent matrix: full is D (P3), truncated D' (P7), leading M (P4); auto lets the toolkit choose",
+    "resolve": "the largest step of ln(wavenumber) along a neutral curve: directions are inserted until it holds",
+    "growth": "the relative tolerance of the largest growth rate",
+}
+
+LONGEST = 60  # characters of a wrong value that a message repeats
+SAYS = {
+    "union_tag_not_found": "is neither a range nor a list",
+    "too_short": "is empty",
+    "too_long": f"has more than {MAX_SAMPLES} values",
+    "string_too_short": "is empty",
+    "dict_type": "is not a table",
+    "model_type": "is not a table",
+    "model_attributes_type": "is not a table",
+}
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that was probably meant."""
+    return next(iter(get_close_matches(word, list(known), n=1)), None)
+
+
+def unknown(name: str, word: str, known: Iterable[str]) -> str:
+    """Return the sentence about a word that is not known here."""
+    near = nearest(word, known)
+    return f"{name} is unknown{f'; did you mean {near}?' if near else ''} (known: {', '.join(known)})"
+
+
+def fitted(raw: dict) -> tuple[Layout | None, list[str]]:
+    """Return the scene's tables, or None and one sentence for each place where the file has not their shape."""
+    try:
+        return Layout.model_validate(raw), []
+    except ValidationError as failure:
+        errors = failure.errors(include_url=False)
+    # A misspelt key is one fault, not an unknown key and a missing one.
+    strange = [error["loc"] for error in errors if error["type"] == "extra_forbidden"]
+    meant = [(*place[:-1], nearest(str(place[-1]), _keys(place))) for place in strange]
+    return None, [_sentence(e) for e in errors if not (e["type"] == "missing" and e["loc"] in meant)]
+
+
+def _keys(place: tuple) -> list[str]:
+    """Return the keys of the table that a place lies in."""
+    if len(place) == 1:
+        table: type[Table] = Layout
+    elif place[0] in ("parameters", "assumed"):
+        table = Assumption
+    else:
+        table = _TABLES.get(place[-2], Interval)
+    return [field.alias or name for name, field in table.model_fields.items()]
+
+
+def _is_tag(i: int, place: tuple) -> bool:
+    """Tell pydantic's names of alternatives from the keys of the file."""
+    return str(place[i]).startswith("<") or (place[0] == "request" and i == 1)
+
+
+def _name(keys: list) -> str:
+    """Return a place as a reader looks for it: ``[request] wavenumber.count``."""
+    path = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in keys[1:] if k not in ("value", "values"))
+    if path:
+        return f"[{keys[0]}] {path[1:]}"
+    return f"[{keys[0]}]" if keys[0] in ("parameters", "assumed", "request", "tolerance") else str(keys[0])
+
+
+def _shown(value: Any) -> str:
+    """Return a value as TOML would write it, shortened."""
+    text = json.dumps(value, default=str, ensure_ascii=False)
+    return text if len(text) <= LONGEST else f"{text[:LONGEST]}..."
+
+
+def _sentence(error: Any) -> str:
+    """Return one of pydantic's errors in the words of a scene."""
+    place, fault, context = error["loc"], error["type"], error.get("ctx", {})
+    keys = [key for i, key in enumerate(place) if not _is_tag(i, place)]
+    name, word = _name(keys), next(k for k in reversed(keys) if isinstance(k, str))
+    meaning = f": it is {MEANING[word]}" if word in MEANING else ""
+    if fault == "extra_forbidden":
+        return unknown(name, word, _keys(place))
+    if fault == "missing":
+        return f"{name} is missing{meaning}"
+    if word == "request" and fault == "union_tag_not_found":
+        return f"[request] kind is missing: it is {MEANING['kind']}"
+    if fault == "union_tag_invalid":
+        return unknown(f"[request] kind = {_shown(context['tag'])}", context["tag"], REQUESTS)
+    if fault == "value_error":
+        return f"{name} = {_shown(error['input'])} {context['error']}"  # a sentence of `shape`, which says it all
+    return f"{name} = {_shown(error['input'])} {SAYS.get(fault, error['msg'].removeprefix('Input '))}{meaning}"

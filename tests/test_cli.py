@@ -1,0 +1,223 @@
+"""The command ``stability``: its pages, its output, its exit statuses."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from stability import runner
+from stability.cli import main
+from stability.errors import ConvergenceError, PrecisionError
+from stability.results import open_results
+from tests.test_scene import DIAGRAM, GOOD
+
+ROOT = Path(__file__).parent.parent
+
+
+@pytest.fixture
+def call(tmp_path, monkeypatch):
+    """Call the command in an empty folder that holds scene.toml."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.toml").write_text(GOOD)
+
+    def called(*arguments: str):
+        return CliRunner().invoke(main, arguments)
+
+    return called
+
+
+def process(*arguments: str, **options) -> subprocess.CompletedProcess:
+    """Run the command in a process of its own, as a user does."""
+    environment = os.environ | {"PYTHONPATH": str(ROOT), **options.pop("env", {})}
+    command = [sys.executable, "-m", "stability", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, env=environment, **options)
+
+
+def test_the_first_page_says_what_it_does_how_to_start_and_what_the_statuses_mean(call):
+    page = call("--help").output
+    for phrase in ("Linear stability", "stability run figures/scenes/P2.1.toml", "Exit status:", "0    done", "130"):
+        assert phrase in page
+    for command in ("run", "list", "derive"):
+        assert f"\n  {command} " in page
+
+
+def test_help_loads_no_heavy_library():
+    script = (
+        "import sys\nfrom stability.cli import main\n"
+        "try: main(['--help'])\nexcept SystemExit: pass\n"
+        "print('loaded:', *sorted({m.split('.')[0] for m in sys.modules}))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, cwd=ROOT, check=True)
+    loaded = set(done.stdout.split("loaded:")[1].split())
+    assert "click" in loaded
+    assert not loaded & {"sympy", "matplotlib", "pydantic", "xarray", "numpy", "rich", "scipy", "mpmath"}
+
+
+def test_a_run_writes_its_result_and_says_what_it_found(call, tmp_path):
+    done = call("run", "scene.toml")
+    assert done.exit_code == 0, done.output
+    assert done.stdout.startswith("A scene of the tests\n")
+    assert "largest growth" in done.stdout and "wedge_angle = 15: theta_w is not given" in done.stdout
+    assert done.stdout.endswith(
+        'wrote scene.nc; to open it: import stability; ds = stability.open_results("scene.nc")\n'
+    )
+    assert open_results(tmp_path / "scene.nc").attrs["scene_text"] == GOOD
+
+
+def test_a_quiet_run_prints_nothing(call, tmp_path):
+    done = call("run", "scene.toml", "--quiet", "-o", "other.nc")
+    assert (done.exit_code, done.output) == (0, "")
+    assert (tmp_path / "other.nc").exists()
+
+
+def test_every_problem_of_a_scene_is_a_line_on_standard_error_and_nothing_is_written(call, tmp_path):
+    (tmp_path / "scene.toml").write_text(GOOD.replace("= 34", "= 134").replace("count = 5", "count = 1"))
+    done = call("run", "scene.toml")
+    assert done.exit_code == 2 and done.stdout == ""
+    assert [line.split(" = ")[0] for line in done.stderr.splitlines()] == [
+        "error: scene.toml: [request] wavenumber.count",
+        "error: scene.toml: [parameters] friction_angle",
+    ]
+    assert not (tmp_path / "scene.nc").exists()
+
+
+@pytest.mark.parametrize(
+    ("output", "says"),
+    [("nowhere/x.nc", "there is no folder nowhere"), (".", "is a folder"), ("scene.toml", "is the scene itself")],
+)
+def test_a_place_that_cannot_be_written_is_refused_before_the_run(output, says, call, monkeypatch, tmp_path):
+    monkeypatch.setattr(runner, "KINDS", {})  # an analysis that started would fail
+    done = call("run", "scene.toml", "-o", output)
+    assert done.exit_code == 2 and says in done.stderr
+    assert (tmp_path / "scene.toml").read_text() == GOOD
+
+
+@pytest.mark.parametrize(
+    ("raised", "status", "says"),
+    [
+        (ConvergenceError("no decrease after 9 halvings"), 3, "error: no decrease after 9 halvings\n"),
+        (PrecisionError("30 digits do not decide"), 3, "error: 30 digits do not decide\n"),
+        (KeyboardInterrupt(), 130, "error: interrupted: nothing was written\n"),
+    ],
+    ids=["convergence", "precision", "interrupted"],
+)
+def test_a_failure_has_its_status_and_no_traceback(raised, status, says, call, monkeypatch, tmp_path):
+    def fails(scene, report):
+        raise raised
+
+    monkeypatch.setitem(runner.KINDS, "growth_map", fails)
+    done = call("run", "scene.toml")
+    assert (done.exit_code, done.stderr) == (status, says)
+    assert not (tmp_path / "scene.nc").exists()
+
+
+def test_a_disk_that_fails_is_named(call, monkeypatch):
+    def full(ds, path):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("stability.results.save", full)
+    done = call("run", "scene.toml")
+    assert done.exit_code == 2
+    assert done.stderr == "error: --output scene.nc cannot be written: No space left on device\n"
+
+
+def test_statuses_reach_the_shell(tmp_path):
+    (tmp_path / "scene.toml").write_text(GOOD)
+    assert process("run", "scene.toml", cwd=tmp_path).returncode == 0
+    missing = process("run", "absent.toml", cwd=tmp_path)
+    assert missing.returncode == 2 and missing.stderr.startswith("error: absent.toml: No such file")
+    assert process("rum", cwd=tmp_path).returncode == 2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to send")
+def test_an_interrupt_ends_a_long_run_with_its_status_and_without_a_file(tmp_path):
+    long = DIAGRAM.replace("{ values = [-0.5, 0.0, 0.5] }", "{ from = -0.5, to = 1.2, count = 20000 }")
+    (tmp_path / "long.toml").write_text(long.replace("count = 3", "count = 301"))
+    command = [sys.executable, "-m", "stability", "run", "long.toml"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    with subprocess.Popen(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) as running:
+        heartbeat = running.stderr.readline()  # the run has begun, and says so where there is no terminal
+        running.send_signal(signal.SIGINT)
+        rest = running.stderr.read()
+    assert heartbeat.startswith("long: ") and "left" in heartbeat
+    assert running.returncode == 130
+    assert rest.splitlines()[-1] == "error: interrupted: nothing was written"
+    assert [p.name for p in tmp_path.iterdir()] == ["long.toml"]
+
+
+@pytest.mark.parametrize("variable", ["NO_COLOR", None])
+def test_errors_are_red_on_a_terminal_unless_no_colour_is_asked_for(variable, tmp_path, monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    if variable:
+        monkeypatch.setenv(variable, "1")
+    done = CliRunner().invoke(main, ["run", str(tmp_path / "absent.toml")], color=True)
+    assert ("\x1b[31m" in done.stderr) is (variable is None)
+
+
+def test_a_list_has_every_entry_and_every_parameter(call):
+    page = call("list").output
+    for phrase in (
+        'closure = "perturbed"',
+        'flow = "uniform_strain"',
+        "epsilon",
+        "(0, 90)",
+        "m/s2",
+        "paper, I2",
+        "e_theta",
+    ):
+        assert phrase in page
+    assert "flow =" not in call("list", "closures").output
+    assert "closure =" not in call("list", "flows").output
+    assert call("list", "walls").exit_code == 2
+
+
+def test_a_list_needs_no_sympy_and_no_unicode(tmp_path):
+    process("list")  # warms the cache of generated modules
+    script = (
+        "import sys\nfrom stability.cli import main\n"
+        "try: main(['list'])\nexcept SystemExit: print('sympy' in sys.modules)"
+    )
+    environment = os.environ | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, cwd=ROOT, env=environment, check=True)
+    assert done.stdout.decode("ascii").endswith("False\n")
+
+
+def test_a_tangent_matrix_is_printed_in_three_ways(call):
+    from sympy import Matrix, sympify
+
+    import stability as st
+
+    text = call("derive", "perturbed", "--matrix", "leading").output
+    assert "[2, 2] =" in text and "\nmu = k*p/N\n" in text and text.isascii()
+    python = call("derive", "perturbed", "--matrix", "leading", "--format", "python").output
+    M = st.tangent_matrix("perturbed", matrix="leading")
+    names = {str(s): s for s in M.free_symbols}
+    assert sympify(python, locals=names | {"Matrix": Matrix}) == Matrix(M)
+    assert call("derive", "perturbed", "--matrix", "leading", "--format", "latex").output.startswith(
+        r"\left[\begin{matrix}"
+    )
+
+
+def test_a_tangent_matrix_can_be_written_out_on_a_flow(call):
+    text = call("derive", "perturbed", "--flow", "uniform_strain", "--matrix", "leading").output
+    assert "delta" in text and "A_xx" not in text
+
+
+def test_unknown_names_are_refused_with_the_nearest_known_one(call):
+    for arguments, says in (
+        (["derive", "perturbd"], "error: closure 'perturbd' is unknown; did you mean 'perturbed'?"),
+        (["derive", "perturbed", "--flow", "uniform"], "error: flow 'uniform' is unknown"),
+        (["lst"], "No such command 'lst'"),
+    ):
+        done = call(*arguments)
+        assert done.exit_code == 2 and says in done.stderr
+
+
+def test_the_version_is_that_of_the_package(call):
+    from stability import __version__
+
+    assert call("--version").output == f"stability {__version__}\n"
