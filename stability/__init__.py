@@ -20,6 +20,7 @@ _PLACES = {
     "growth_map": "stability.analyses.growth_map",
     "neutral_curve": "stability.analyses.neutral_curve",
     "phase_diagram": "stability.analyses.phase_diagram",
+    "certify": "stability.analyses.certify",
     "load_scene": "stability.scene",
     "run": "stability.runner",
     "open_results": "stability.results",

@@ -5,10 +5,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stability import spectrum
+from stability.balls import LAST_BITS
 from stability.closures import CLOSURES
-from stability.errors import SceneError
+from stability.errors import PrecisionError, SceneError
 from stability.flows import FLOWS
 from stability.model import MATRICES, Model, check_waves, unknown_matrix
+
+MACHINE_RTOL = 1e-15  # a few roundings: what a correctly rounded result may need
 
 if TYPE_CHECKING:
     from sympy import ImmutableMatrix
@@ -23,6 +26,7 @@ def eigenvalues(
     wave_angle: Any,
     matrix: str = "full",
     digits: int | None = None,
+    rtol: float | None = None,
 ) -> np.ndarray:
     """Return every eigenvalue of each wave, by decreasing real part.
 
@@ -36,6 +40,8 @@ def eigenvalues(
     matrix : "full" (D, P3), "truncated" (D', P7) or "leading" (M, P4)
     digits : None for float64; otherwise decimal digits of an mpmath evaluation, with parameters, point and waves taken
         as the decimals that they print as
+    rtol : None, or the relative error below which every growth rate is guaranteed: float64 where its own error bound
+        meets it, ball arithmetic elsewhere (parameters and point are then decimals, waves float64 numbers)
 
     Returns
     -------
@@ -45,6 +51,7 @@ def eigenvalues(
     Raises
     ------
     SceneError : a parameter, a point or a wave outside its range
+    PrecisionError : with ``rtol``, a growth rate that cannot be told from zero
     """
     if digits is not None:
         from stability.precise import eigenvalues as precise
@@ -52,9 +59,26 @@ def eigenvalues(
         return precise(closure, flow, parameters, point, wavenumber, wave_angle, matrix, digits)
     wavenumber, wave_angle = np.broadcast_arrays(np.asarray(wavenumber, float), np.asarray(wave_angle, float))
     check_waves(wavenumber, wave_angle)
+    if rtol is not None:
+        return _guaranteed(closure, flow, parameters, point, wavenumber, wave_angle, matrix, rtol)
     form = Model(closure, flow).base(parameters, point).form(wave_angle, matrix)
     found = form.eigenvalues(wavenumber)
     return np.stack(spectrum.leading_first(*found) if len(found) == 2 else found, axis=-1)
+
+
+def _guaranteed(*question: Any) -> np.ndarray:
+    from stability.enclosures import guaranteed
+
+    if not MACHINE_RTOL <= question[-1] < 1:
+        raise SceneError(f"rtol = {question[-1]!r} lies outside [{MACHINE_RTOL:g}, 1): float64 cannot hold more digits")
+    found, tally = guaranteed(*question)
+    if tally.undecided:
+        angle, wavenumber = tally.undecided[0]
+        raise PrecisionError(
+            f"{len(tally.undecided)} growth rates cannot be told from zero with {LAST_BITS} bits, the first at "
+            f"wavenumber {wavenumber!r} 1/m, wave_angle {angle!r} deg: it is zero for all that can be told; leave that wave out"
+        )
+    return found
 
 
 def tangent_matrix(closure: Any, flow: Any = None, matrix: str = "full") -> "ImmutableMatrix":

@@ -10,7 +10,12 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Arithmetic:
-    """Numbers and elementary functions; ``number`` reads a decimal or a float, ``rational(p, q)`` is p/q."""
+    """Numbers and elementary functions.
+
+    ``number`` reads a decimal or a float, ``rational(p, q)`` is p/q, ``direction(degrees, arithmetic)`` returns cosine
+    and sine; ``centre`` is the nearest float and ``size`` an upper bound of the modulus, both as floats; ``unit`` is the
+    ball [-1, 1].
+    """
 
     name: str
     number: Callable
@@ -27,6 +32,29 @@ class Arithmetic:
     atan: Callable
     exp: Callable
     log: Callable
+    direction: Callable
+    centre: Callable = float
+    size: Callable = abs
+    unit: Any = None
+
+
+def cosine_sine(degrees: Any, a: Arithmetic) -> tuple[Any, Any]:
+    """Return cosine and sine of an angle in degrees, exact at multiples of 45 degrees.
+
+    Radians cannot hold 45 degrees, and at a wavenumber of 1e6 /m the rounding of pi/4 would decide the growth rate of a
+    wave along the velocity characteristic: the quarter turns are taken off in degrees, where they are exact.
+    """
+    quarters = a.floor(degrees / 90 + 0.5)
+    rest = degrees - 90 * quarters
+    diagonal = abs(rest) == 45
+    c, s = a.cos(rest * a.pi / 180), a.sin(rest * a.pi / 180)
+    half = a.sqrt(a.rational(1, 2))
+    c, s = a.where(diagonal, half, c), a.where(diagonal, a.where(rest > 0, half, -half), s)
+    turn = quarters - 4 * a.floor(quarters / 4)
+    return (
+        a.where(turn == 0, c, a.where(turn == 1, -s, a.where(turn == 2, -c, s))),
+        a.where(turn == 0, s, a.where(turn == 1, c, a.where(turn == 2, -s, -c))),
+    )
 
 
 def _float(value: Any) -> Any:
@@ -35,7 +63,7 @@ def _float(value: Any) -> Any:
 
 NUMPY = Arithmetic(
     "float64", _float, complex, lambda p, q: p / q, np.where, np.floor, np.pi,
-    np.sqrt, np.sin, np.cos, np.tan, np.arcsin, np.arctan, np.exp, np.log,
+    np.sqrt, np.sin, np.cos, np.tan, np.arcsin, np.arctan, np.exp, np.log, cosine_sine,
 )  # fmt: skip
 
 
@@ -54,24 +82,5 @@ def multiprecision(digits: int) -> Arithmetic:
     return Arithmetic(
         f"mpmath, {digits} digits", number, mp.mpc, lambda p, q: mp.mpf(p) / q,
         lambda c, a, b: a if c else b, mp.floor, +mp.pi,
-        mp.sqrt, mp.sin, mp.cos, mp.tan, mp.asin, mp.atan, mp.exp, mp.log,
+        mp.sqrt, mp.sin, mp.cos, mp.tan, mp.asin, mp.atan, mp.exp, mp.log, cosine_sine,
     )  # fmt: skip
-
-
-def cosine_sine(degrees: Any, a: Arithmetic) -> tuple[Any, Any]:
-    """Return cosine and sine of an angle in degrees, exact at multiples of 45 degrees.
-
-    Radians cannot hold 45 degrees, and at a wavenumber of 1e6 /m the rounding of pi/4 would decide the growth rate of a
-    wave along the velocity characteristic: the quarter turns are taken off in degrees, where they are exact.
-    """
-    quarters = a.floor(degrees / 90 + 0.5)
-    rest = degrees - 90 * quarters
-    diagonal = abs(rest) == 45
-    c, s = a.cos(rest * a.pi / 180), a.sin(rest * a.pi / 180)
-    half = a.sqrt(a.rational(1, 2))
-    c, s = a.where(diagonal, half, c), a.where(diagonal, a.where(rest > 0, half, -half), s)
-    turn = quarters % 4
-    return (
-        a.where(turn == 0, c, a.where(turn == 1, -s, a.where(turn == 2, -c, s))),
-        a.where(turn == 0, s, a.where(turn == 1, c, a.where(turn == 2, -s, -c))),
-    )

@@ -1,9 +1,9 @@
 """SymPy expressions -> the text of a generated module (stage 1 of `codegen`)."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
-from sympy import Expr, Symbol, cse, numbered_symbols
+from sympy import Expr, ImmutableMatrix, Symbol, cse, numbered_symbols
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.str import StrPrinter
 
@@ -12,9 +12,9 @@ from stability.flows.base import Flow
 from stability.linearise import imbalance, letter_gradients, letters, pencil
 from stability.parameters import Parameter
 from stability.symbols import body_force, gradient, hessian
-from stability.tangent import MATRICES, reduced_form
+from stability.tangent import MATRICES, Pair, Single, reduced_form
 
-BACKEND = "sqrt sin cos tan asin atan exp log pi rational"
+FUNCTIONS = "sqrt sin cos tan asin atan exp log pi rational"
 
 
 class Printer(StrPrinter):
@@ -106,64 +106,64 @@ def unpacking(fields: Iterable) -> str:
     return f"{nested(state_names(fields))} = state"
 
 
-def series_text(series: Mapping[int, Expr], name: str) -> tuple[list[tuple[str, Expr]], str]:
-    """Return the assignments of a series' coefficients and the text of the dict that holds them."""
-    names = {n: f"{name}_{n}".replace("-", "m") for n in sorted(series)}
-    return [(names[n], series[n]) for n in names], "{" + ", ".join(f"{n}: {v}" for n, v in names.items()) + "}"
-
-
 def closure_source(closure: Closure) -> str:
     """Return the generated module of a closure."""
-    named_letters = [(str(s), e) for s, e in letters(closure).items()]
+    own_letters = [(str(s), e) for s, e in letters(closure).items()]
     gradients = [(str(s), e) for s, e in letter_gradients(closure).items()]
     unpack = [unpacking(closure.fields), *parameter_lines(closure.parameters)]
 
-    def staged(results: list[tuple[str, Expr]]) -> list:
+    def of_state(name: str, results: list[tuple[str, Expr]], result: str, more: str = "") -> str:
+        """Return a function of the jet: letters, their gradients, then the results."""
         slopes = needed(gradients, symbols_of(e for _, e in results))
-        own = needed(named_letters, symbols_of(e for _, e in (*results, *slopes)))
-        return [own, slopes, results]
-
-    functions = []
-    for matrix in MATRICES:
-        form = reduced_form(closure, matrix)
-        parts = {part: series_text(getattr(form, part), part) for part in form.__dataclass_fields__}
-        assignments = [a for assigned, _ in parts.values() for a in assigned]
-        result = "{" + ", ".join(f"{part!r}: {text}" for part, (_, text) in parts.items()) + "}"
-        functions.append(function(matrix, "state, parameters", unpack, staged(assignments), result))
-
-    P = pencil(closure)
-    n = range(len(closure.q))
-    tables = (
-        {f"L2_{a}{b}": P.L2[a][b] for a in (0, 1) for b in (0, 1)} | {f"L1_{a}": P.L1[a] for a in (0, 1)} | {"L0": P.L0}
-    )
-    entries = [(f"{t}_{i}{j}", m[i, j]) for t, m in tables.items() for i in n for j in n]
-    rows = {t: nested([[f"{t}_{i}{j}" for j in n] for i in n]) for t in tables}
-    result = (
-        f"(({rows['L2_00']}, {rows['L2_01']}), ({rows['L2_10']}, {rows['L2_11']})), "
-        f"({rows['L1_0']}, {rows['L1_1']}), {rows['L0']}"
-    )
-    functions.append(function("pencil", "state, parameters", unpack, staged(entries), result))
+        used = needed(own_letters, symbols_of(e for _, e in (*results, *slopes)))
+        extra = [f"{nested([str(s) for s in body_force])} = {more}"] if more else []
+        arguments = ", ".join(filter(None, ("state", "parameters", more)))
+        return function(name, arguments, unpack + extra, [used, slopes, results], result)
 
     balance = [(f"balance_{i}", e) for i, e in enumerate(imbalance(closure))]
-    force = f"{nested(list(map(str, body_force)))} = body_force"
-    functions.append(
-        function(
-            "imbalance",
-            "state, parameters, body_force",
-            [*unpack, force],
-            staged(balance),
-            nested([name for name, _ in balance]),
-        )
-    )
-    values = "{" + ", ".join(f"{s!r}: {s}" for s, _ in named_letters) + "}"
-    functions.append(function("letters", "state, parameters", unpack, [named_letters], values))
     return module(
         closure,
-        functions,
-        FORM=type(form).__name__,
+        [
+            *(of_state(matrix, *form_text(reduced_form(closure, matrix))) for matrix in MATRICES),
+            of_state("pencil", *pencil_text(closure)),
+            of_state("imbalance", balance, nested([name for name, _ in balance]), more="body_force"),
+            function("letters", "state, parameters", unpack, [own_letters], named(own_letters)),
+        ],
+        FORM=type(reduced_form(closure)).__name__,
         EVOLVES=closure.evolves,
         FIELDS=tuple(tuple(map(str, f)) if isinstance(f, tuple) else str(f) for f in closure.fields),
     )
+
+
+def form_text(form: Pair | Single) -> tuple[list[tuple[str, Expr]], str]:
+    """Return the assignments of all coefficients of a reduced form, and the text of the dict of its series."""
+    assignments: list[tuple[str, Expr]] = []
+    parts = []
+    for part, series in vars(form).items():
+        names = {n: f"{part}_{n}".replace("-", "m") for n in sorted(series)}
+        assignments += [(names[n], series[n]) for n in names]
+        parts.append(f"{part!r}: {{{', '.join(f'{n}: {name}' for n, name in names.items())}}}")
+    return assignments, "{" + ", ".join(parts) + "}"
+
+
+def pencil_text(closure: Closure) -> tuple[list[tuple[str, Expr]], str]:
+    """Return the assignments of the entries of L2, L1 and L0, and the text of their nested tuple."""
+    P, axes = pencil(closure), (0, 1)
+    assignments: list[tuple[str, Expr]] = []
+
+    def matrix(name: str, entries: ImmutableMatrix) -> str:
+        names = [[f"{name}_{i}{j}" for j in range(entries.cols)] for i in range(entries.rows)]
+        assignments.extend((names[i][j], entries[i, j]) for i in range(entries.rows) for j in range(entries.cols))
+        return nested(names)
+
+    second = ", ".join(f"({', '.join(matrix(f'L2_{a}{b}', P.L2[a][b]) for b in axes)})" for a in axes)
+    first = ", ".join(matrix(f"L1_{a}", P.L1[a]) for a in axes)
+    return assignments, f"(({second}), ({first}), {matrix('L0', P.L0)})"
+
+
+def named(assignments: list[tuple[str, Expr]]) -> str:
+    """Return the text of a dict from names to the variables of those names."""
+    return "{" + ", ".join(f"{name!r}: {name}" for name, _ in assignments) + "}"
 
 
 def flow_source(flow: Flow) -> str:
@@ -173,7 +173,6 @@ def flow_source(flow: Flow) -> str:
     unpack = [*parameter_lines(flow.parameters), *(f"{r.symbol} = point[{r.word!r}]" for r in flow.point)]
     state = "{" + ", ".join(f"{str(f)!r}: {nested(jet_names(f))}" for f in flow.fields) + "}"
     force = [(str(s), e) for s, e in zip(body_force, flow.body_force, strict=True)]
-    values = "{" + ", ".join(f"{s!r}: {s}" for s, _ in constants) + "}"
     # Letters such as Psi_w only exist (asin of at most one) where the conditions on the bare parameters hold.
     bare = [c for c in flow.conditions if not c[0].free_symbols & flow.letters.keys()]
     derived = [c for c in flow.conditions if c not in bare]
@@ -182,7 +181,7 @@ def flow_source(flow: Flow) -> str:
             "state", "point, parameters", unpack, [needed(constants, symbols_of(e for _, e in jets)), jets], state
         ),
         function("body_force", "point, parameters", unpack, [force], nested([s for s, _ in force])),
-        function("letters", "point, parameters", unpack, [constants], values),
+        function("letters", "point, parameters", unpack, [constants], named(constants)),
         function("conditions", "point, parameters", unpack, [], conditions(bare)),
         function("letter_conditions", "point, parameters", unpack, [constants], conditions(derived)),
     ]
@@ -204,7 +203,7 @@ def condition(relation: Expr) -> str:
 
 
 def module(entry: Closure | Flow, functions: list[str], **constants: Any) -> str:
-    """Return a whole module: constants, then ``build(backend)``."""
+    """Return a whole module: constants, then ``build(arithmetic)``."""
     constants = {
         "NAME": entry.name,
         "TITLE": entry.title,
@@ -213,13 +212,13 @@ def module(entry: Closure | Flow, functions: list[str], **constants: Any) -> str
         **constants,
     }
     names = [f.split("(")[0].split()[-1] for f in functions]
-    unpack = "\n".join(f"    {name} = backend.{name}" for name in BACKEND.split())
+    unpack = "\n".join(f"    {name} = arithmetic.{name}" for name in FUNCTIONS.split())
     exported = ", ".join(f"{n!r}: {n}" for n in names)
     return (
         f'"""Generated from {entry.name} ({entry.source}). Do not edit."""\n'
         "from math import inf\nfrom stability.parameters import Parameter\n\n"
         + "\n".join(f"{name} = {value!r}" for name, value in constants.items())
-        + f"\n\n\ndef build(backend):\n{unpack}\n\n"
+        + f"\n\n\ndef build(arithmetic):\n{unpack}\n\n"
         + "\n".join(functions)
         + f"\n    return {{{exported}}}\n"
     )

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from stability import codegen, spectrum
-from stability.arithmetic import NUMPY, Arithmetic, cosine_sine
+from stability.arithmetic import NUMPY, Arithmetic
 from stability.closures import CLOSURES
 from stability.errors import SceneError
 from stability.flows import FLOWS
@@ -53,6 +53,18 @@ def combine(x: Any, y: Any, c: Any, s: Any) -> Any:
     if isinstance(x, tuple):
         return tuple(combine(a, b, c, s) for a, b in zip(x, y, strict=True))
     return c * x + s * y
+
+
+def _floats(values: Mapping) -> dict:
+    """Return decimals as floats; what is not a number stays for the check to name."""
+
+    def of(value: Any) -> Any:
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            return value
+
+    return {word: of(value) for word, value in values.items()}
 
 
 @dataclass(frozen=True)
@@ -146,7 +158,9 @@ class Model:
         parameters : words of closure and flow, SI units, angles in degrees
         point : coordinates of the flow's point (angles in degrees); arrays of one shape make an array of points
         """
-        if found := self.problems(parameters, point):
+        if self.arithmetic is not NUMPY:  # ranges and constraints are checked once, in floats
+            Model(self.closure, self.flow).base(_floats(parameters), _floats(point))
+        elif found := self.problems(parameters, point):
             raise SceneError(*found)
         constants, place = self._si(parameters, point)
         closure, flow = self._functions
@@ -156,7 +170,7 @@ class Model:
             for f in self._closure["FIELDS"]
         )
         base = Base(self, constants, state, flow["body_force"](place, constants), flow["letters"](place, constants))
-        if self.modes == 1:
+        if self.modes == 1 and self.arithmetic is NUMPY:
             self._check_constraint(base)
         return base
 
@@ -168,7 +182,7 @@ class Model:
         if worst > CONSTRAINT_RTOL:
             raise SceneError(
                 f"{self.closure_name} imposes its constraint exactly, but {self.flow_name} misses it by {worst:.3g} "
-                "of the velocity gradient: choose a flow with div u = 0 (delta = 0), or a closure without the constraint"
+                "of the velocity gradient: choose a flow with div u = 0 (delta = 0), or another closure"
             )
 
 
@@ -214,7 +228,7 @@ class Base:
         """
         if matrix not in MATRICES:
             raise SceneError(unknown_matrix(matrix))
-        c, s = cosine_sine(wave_angle, self.model.arithmetic)
+        c, s = self.model.arithmetic.direction(wave_angle, self.model.arithmetic)
         turned = tuple(tuple(rotated(tensor, c, s) for tensor in jet) for jet in self.state)
         coefficients = self.model._functions[0][matrix](turned, self.parameters)
         along = turned[0][0][0] if matrix == "full" else 0

@@ -23,6 +23,7 @@ VARIABLES = {
     "unstable_above": ("1", "1 where waves just shorter than the neutral one grow, 0 where they decay"),
     "unstable_longest": ("1", "1 where the longest waves of the range grow"),
     "unstable_shortest": ("1", "1 where the shortest waves of the range grow"),
+    "sign": ("1", "certified sign of the growth rate: 1 grows, -1 decays, 0 undecided"),
     "delta": ("1", "rate of dilation tr V/||V||"),
     "scaled_wavenumber": ("1", "Lambda epsilon = mu |xi|^2 epsilon/2"),
     "scaled_growth_rate": ("1", "largest growth rate over all directions, times epsilon"),

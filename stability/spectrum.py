@@ -85,10 +85,8 @@ def pair(form: dict[str, Series], wavenumber: Any, xp: Any = np) -> tuple[Any, A
     double = abs(root) < NEARLY_DOUBLE * abs(trace)
     small = xp.where(double, trace / 2 - root, (dr + 1j * di) / xp.where(large == 0, 1, large))
     x, y = small.real, small.imag
-    for _ in range(NEWTON_STEPS):  # on f = lambda^2 - Tr lambda + Det
-        f_r = dr + (x * (x - tr) - y * (y - ti))
-        f_i = di + (y * (x - tr) + x * (y - ti))
-        s_r, s_i = 2 * x - tr, 2 * y - ti
+    for _ in range(NEWTON_STEPS):
+        f_r, f_i, s_r, s_i = characteristic((tr, ti), (dr, di), x, y)
         size = s_r * s_r + s_i * s_i
         size = xp.where(double | (size == 0), inf, size)
         x, y = x - (f_r * s_r + f_i * s_i) / size, y - (f_i * s_r - f_r * s_i) / size
@@ -96,13 +94,25 @@ def pair(form: dict[str, Series], wavenumber: Any, xp: Any = np) -> tuple[Any, A
     return trace - small, small
 
 
+def characteristic(trace: tuple, determinant: tuple, x: Any, y: Any) -> tuple[Any, Any, Any, Any]:
+    """Return real and imaginary part of ``f = lambda^2 - Tr lambda + Det`` and of its slope, at lambda = x + i y."""
+    (tr, ti), (dr, di) = trace, determinant
+    return dr + (x * (x - tr) - y * (y - ti)), di + (y * (x - tr) + x * (y - ti)), 2 * x - tr, 2 * y - ti
+
+
 def single(form: dict[str, Series], wavenumber: Any) -> Any:
-    """Return the one eigenvalue ``regular - numerator/denominator``, its parts formed in real arithmetic."""
+    """Return the one eigenvalue of a constrained closure."""
+    real, imaginary = single_parts(form, wavenumber)
+    return real + 1j * imaginary
+
+
+def single_parts(form: dict[str, Series], wavenumber: Any) -> tuple[Any, Any]:
+    """Return real and imaginary part of ``regular - numerator/denominator``, formed in real arithmetic."""
     r, i = values(form["regular"], wavenumber)
     a, b = values(form["numerator"], wavenumber)
     c, d = values(form["denominator"], wavenumber)
     size = c * c + d * d
-    return (r - (a * c + b * d) / size) + 1j * (i - (b * c - a * d) / size)
+    return r - (a * c + b * d) / size, i - (b * c - a * d) / size
 
 
 def stability_polynomial(form: dict[str, Series]) -> Polynomial:

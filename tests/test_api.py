@@ -25,7 +25,7 @@ def cases(reference):
 
 
 def test_float64_meets_the_reference_to_1e_12(reference):
-    # Scale |lambda|. On the stress characteristic (28 degrees on the axis, where 2a = k) the leading terms of rigid-plastic
+    # Scale |lambda|. On the stress characteristic (28 degrees on the axis, 2a = k) the leading terms of rigid-plastic
     # flow and of D' cancel exactly, so there the rounding of the inputs alone, 34 degrees in radians for one, moves
     # lambda by a rounding of mu q^2: four of those are allowed, to these two only.
     count = 0

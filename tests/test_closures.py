@@ -9,6 +9,7 @@ from stability.closures.drucker_prager import PERTURBED, stress
 from stability.closures.plane_flow import V, grad_u, momentum_and_mass, velocity
 from stability.errors import SceneError
 from stability.linearise import state_letters
+from stability.parameters import Parameter
 from stability.symbols import k, p, symbol
 
 
@@ -53,6 +54,12 @@ def test_a_closure_with_the_wrong_number_of_equations_is_refused():
 def test_an_undeclared_symbol_is_refused_by_name():
     with pytest.raises(ValueError, match="undeclared symbols.*viscosity_0"):
         changed(flux=PERTURBED.flux * Symbol("viscosity_0", real=True))
+
+
+def test_a_letter_that_python_reserves_is_refused():
+    record = Parameter("slope", "lambda", "1", 0, 1, "slope", "nowhere")
+    with pytest.raises(ValueError, match="lambda.*choose other letters"):
+        changed(parameters=(*PERTURBED.parameters, record))
 
 
 def test_an_unknown_name_is_refused_with_the_nearest_one():

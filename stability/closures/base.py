@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from keyword import iskeyword
 
 from sympy import Expr, ImmutableMatrix, Matrix, Symbol, sqrt
 
@@ -55,6 +56,9 @@ class Closure:
                 f"closure {self.name}: {n} components of q need {n} entries of E and S and an {n} x 2 flux, "
                 f"got {len(self.evolves)}, {len(self.supply)} and {self.flux.shape}"
             )
+        names = [*map(str, (*self.q, *self.g, *self.letters)), *(r.symbol for r in self.parameters)]
+        if bad := sorted(n for n in names if not n.isidentifier() or iskeyword(n)):
+            raise ValueError(f"closure {self.name}: {bad} cannot be names in generated code: choose other letters")
         known = {
             *self.q,
             *self.g,
