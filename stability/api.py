@@ -76,7 +76,7 @@ def _guaranteed(*question: Any) -> np.ndarray:
         angle, wavenumber = tally.undecided[0]
         raise PrecisionError(
             f"{len(tally.undecided)} growth rates cannot be told from zero with {LAST_BITS} bits, the first at "
-            f"wavenumber {wavenumber!r} 1/m, wave_angle {angle!r} deg: it is zero for all that can be told; leave that wave out"
+            f"wavenumber {wavenumber!r} 1/m, wave_angle {angle!r} deg: zero, for all that can be told; leave it out"
         )
     return found
 

@@ -12,9 +12,9 @@ import numpy as np
 class Arithmetic:
     """Numbers and elementary functions.
 
-    ``number`` reads a decimal or a float, ``rational(p, q)`` is p/q, ``direction(degrees, arithmetic)`` returns cosine
-    and sine; ``centre`` is the nearest float and ``size`` an upper bound of the modulus, both as floats; ``unit`` is the
-    ball [-1, 1].
+    ``number`` reads a decimal or a float, ``rational(p, q)`` is p/q, and ``direction(degrees, arithmetic)`` returns
+    cosine and sine; ``centre`` is the nearest float and ``size`` an upper bound of the modulus, as floats; ``unit``
+    is the ball [-1, 1].
     """
 
     name: str

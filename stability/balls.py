@@ -6,10 +6,11 @@ python-flint is the extra ``certify``. Without it the same expressions run in `m
 from fractions import Fraction
 from functools import cache
 from importlib.util import find_spec
+from math import inf, isfinite, nan, nextafter
 from typing import Any
 
 from stability.arithmetic import Arithmetic, cosine_sine
-
+from stability.bounded import INFLATION
 
 FIRST_BITS, LAST_BITS = 128, 4096  # the precision is doubled in between
 
@@ -21,17 +22,37 @@ def available() -> bool:
 
 def exact(value: Any) -> Fraction:
     """Return a decimal, or a float as the decimal that it prints as, as a fraction."""
-    return Fraction(repr(value) if isinstance(value, float) else str(value))
+    return Fraction(repr(float(value)) if isinstance(value, float) else str(value))  # a NumPy float says its type in repr
 
 
 def enclosing(bits: int) -> Arithmetic:
-    """Return ball or interval arithmetic with a working precision of ``bits``."""
-    return arb_balls(bits) if available() else intervals(bits)
+    """Return ball or interval arithmetic with a working precision of ``bits``, set here for all that follows."""
+    if not available():
+        return intervals(bits)
+    from flint import ctx
+
+    ctx.prec = bits  # python-flint's own: also whenever an arithmetic is used again after another precision
+    return arb_balls(bits)
+
+
+def exact_float(value: float, arithmetic: Arithmetic) -> Any:
+    """Return exactly that float64 number, not the decimal that it prints as."""
+    p, q = value.as_integer_ratio()
+    return arithmetic.number(p) / arithmetic.number(q)
+
+
+def float_enclosure(ball: Any, arithmetic: Arithmetic) -> tuple[float, float]:
+    """Return a float64 number and how far from it the ball may reach; (nan, inf) where float64 has no such number."""
+    centre = arithmetic.centre(ball)
+    if not isfinite(centre):
+        return nan, inf
+    gap = ball - exact_float(centre, arithmetic)
+    return centre, 0.0 if gap == 0 else nextafter(arithmetic.size(gap) * INFLATION, inf)
 
 
 @cache
 def arb_balls(bits: int) -> Arithmetic:
-    """Return Arb arithmetic; the precision is python-flint's context, set here for all that follows."""
+    """Return Arb arithmetic; its precision is python-flint's context: use `enclosing`, which sets that."""
     from flint import acb, arb, ctx, fmpq
 
     ctx.prec = bits
