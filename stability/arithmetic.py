@@ -63,7 +63,7 @@ def _float(value: Any) -> Any:
 
 NUMPY = Arithmetic(
     "float64", _float, complex, lambda p, q: p / q, np.where, np.floor, np.pi,
-    np.sqrt, np.sin, np.cos, np.tan, np.arcsin, np.arctan, np.exp, np.log, cosine_sine,
+    np.sqrt, np.sin, np.cos, np.tan, np.arcsin, np.arctan, np.exp, np.log, cosine_sine, np.asarray,
 )  # fmt: skip
 
 

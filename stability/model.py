@@ -55,18 +55,6 @@ def combine(x: Any, y: Any, c: Any, s: Any) -> Any:
     return c * x + s * y
 
 
-def _floats(values: Mapping) -> dict:
-    """Return decimals as floats; what is not a number stays for the check to name."""
-
-    def of(value: Any) -> Any:
-        try:
-            return float(value)
-        except (TypeError, ValueError):
-            return value
-
-    return {word: of(value) for word, value in values.items()}
-
-
 @dataclass(frozen=True)
 class Model:
     """The generated functions of a closure and of a flow, in one arithmetic ."""
@@ -158,9 +146,7 @@ class Model:
         parameters : words of closure and flow, SI units, angles in degrees
         point : coordinates of the flow's point (angles in degrees); arrays of one shape make an array of points
         """
-        if self.arithmetic is not NUMPY:  # ranges and constraints are checked once, in floats
-            Model(self.closure, self.flow).base(_floats(parameters), _floats(point))
-        elif found := self.problems(parameters, point):
+        if found := self.problems(parameters, point):
             raise SceneError(*found)
         constants, place = self._si(parameters, point)
         closure, flow = self._functions
@@ -170,7 +156,7 @@ class Model:
             for f in self._closure["FIELDS"]
         )
         base = Base(self, constants, state, flow["body_force"](place, constants), flow["letters"](place, constants))
-        if self.modes == 1 and self.arithmetic is NUMPY:
+        if self.modes == 1:
             self._check_constraint(base)
         return base
 
@@ -178,7 +164,7 @@ class Model:
         """Refuse a flow that breaks an exact constraint: identities used in compiling would not hold."""
         (_, gradient, _), miss = base.state[0], base.imbalance()[-1]
         size = sum(abs(g) for row in gradient for g in row)
-        worst = np.max(np.asarray(abs(miss) / size, dtype=float))
+        worst = np.max(np.asarray(self.arithmetic.centre(abs(miss) / size)))
         if worst > CONSTRAINT_RTOL:
             raise SceneError(
                 f"{self.closure_name} imposes its constraint exactly, but {self.flow_name} misses it by {worst:.3g} "

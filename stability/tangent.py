@@ -131,20 +131,41 @@ def reduced_form(closure: Closure, matrix: str = "full") -> Pair | Single:
             numerator = rem(expand(numerator), vanishing, letter)
         return factored(numerator / denominator)
 
-    L = {n: blocks(closure, m) for n, m in frame_series(closure, matrix).items()}
-    C, B, row = ({n: b[i] for n, b in L.items() if not b[i].is_zero_matrix} for i in range(3))
-    corner = {n: b[3][0] for n, b in L.items() if not b[3].is_zero_matrix}
+    C, B, row, corner = block_series(closure, frame_series(closure, matrix))
     if sum(closure.evolves) != 2 or len(closure.evolves) != 3 or set(row) != {1} or row[1][1] != 0:
         raise ValueError(f"closure {closure.name}: closed forms exist for two velocities and one constraint")
     if not corner:
         return single(C, B, reduced)
-    if set(corner) != {2}:
+    return pair(eliminated(closure, frame_series(closure, matrix), matrix), reduced)
+
+
+def block_series(closure: Closure, L: dict[int, Matrix]) -> tuple[dict, dict, dict, dict]:
+    """Return the blocks of a series of L, each without the orders that vanish."""
+    parts = {n: blocks(closure, m) for n, m in L.items()}
+    return tuple({n: b[i] for n, b in parts.items() if not b[i].is_zero_matrix} for i in range(4))
+
+
+def eliminated(closure: Closure, L: dict[int, Matrix], matrix: str) -> dict[int, Matrix]:
+    """Return the series of D, D' or M from that of L: the Schur complement (P3), order by order."""
+    C, B, row, corner = block_series(closure, L)
+    if set(corner) != {2} or set(row) != {1}:
         raise ValueError(f"closure {closure.name}: the constraint must see its unknown through a Laplacian")
-    D = dict(C)  # (P3), order by order
+    D = dict(C)
     for n, b in B.items():
         if matrix != "leading":
-            D[n - 1] = D.get(n - 1, zeros(2, 2)) - b * row[1] / corner[2]
-    return pair(D, reduced)
+            D[n - 1] = D.get(n - 1, zeros(*b.shape[:1] * 2)) - b * row[1] / corner[2][0]
+    return D
+
+
+def in_powers(closure: Closure, matrix: str = "full", direction: tuple = WAVE) -> dict[int, Matrix]:
+    """Return D, D' or M along a unit direction as ``{n: real coefficient of (i|xi|)^n}``, n = 2, 1, 0, -1.
+
+    Only where the constraint sees its unknown; the projection (L3.1) is a quotient of series, see `Single`.
+    """
+    series = pencil(closure).series(direction)
+    if matrix != "full":
+        series = {n: m.applyfunc(lambda e: uniform(closure, e)) for n, m in series.items()}
+    return eliminated(closure, series, matrix)
 
 
 def parity(series: Series, odd: int) -> Series:

@@ -7,7 +7,7 @@ from stability.closures import CLOSURES
 from stability.flows import FLOWS
 from stability.linearise import pencil
 from stability.symbols import A, epsilon, k, mu, q, symbol
-from stability.tangent import MATRICES, Pair, Single, blocks, on_flow, reduced_form, tangent
+from stability.tangent import MATRICES, Pair, Single, blocks, in_powers, on_flow, reduced_form, tangent
 
 xi = (symbol("xi_x"), symbol("xi_y"))
 a, b, d = A[0, 0], A[0, 1], A[1, 1]  # A in the wave's frame
@@ -69,6 +69,22 @@ def test_reduced_forms_agree_with_trace_and_determinant_of_the_tangent_matrix(na
         assert simplify(D.trace() - form["trace"]) == 0
         assert simplify(D.det() - form["determinant"]) == 0
         assert simplify((D.trace() / 2) ** 2 - D.det() - form["discriminant"]) == 0
+
+
+@pytest.mark.parametrize("matrix", MATRICES)
+def test_the_powers_of_the_wavenumber_add_up_to_the_tangent_matrix(matrix):
+    closure = CLOSURES["perturbed"]
+    chi = Rational(3, 5), Rational(4, 5)  # an exact unit direction
+    powers = in_powers(closure, matrix, chi)
+    total = sum((m * (I * q) ** n for n, m in powers.items()), zeros(2, 2))
+    expected = tangent(closure, (q * chi[0], q * chi[1]), matrix)
+    assert (total - expected).applyfunc(lambda e: simplify(expand(e))) == zeros(2, 2)
+    assert set(powers) == {"full": {2, 1, 0, -1}, "truncated": {2, 0}, "leading": {2}}[matrix]
+
+
+def test_the_projection_has_no_powers_of_its_own():
+    with pytest.raises(ValueError, match="through a Laplacian"):
+        in_powers(CLOSURES["rigid_plastic"])
 
 
 def test_d_is_p3():
