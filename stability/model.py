@@ -4,6 +4,7 @@ The base state is turned into each wave's own frame (chi, tau), where one set of
 direction. That needs a frame-indifferent closure, which a test holds for each registered one.
 """
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -38,6 +39,12 @@ def check_waves(wavenumber: np.ndarray, wave_angle: np.ndarray) -> None:
 def unknown_matrix(matrix: Any) -> str:
     """Return the sentence that names the matrices there are."""
     return f"matrix = {matrix!r} is unknown: use one of {', '.join(MATRICES)}"
+
+
+def given(sentence: str, values: Mapping) -> str:
+    """Return the values that a sentence speaks of, or all of them if it names none."""
+    named = {w: v for w, v in values.items() if re.search(rf"\b{w}\b", sentence)}
+    return ", ".join(f"{w} = {v}" for w, v in (named or values).items())
 
 
 def rotated(tensor: Any, c: Any, s: Any) -> Any:
@@ -124,13 +131,10 @@ class Model:
             constants, place = self._si(parameters, point)
             for stage in ("conditions", "letter_conditions"):
                 holds = self._functions[1][stage](place, constants)
-                found += [f"{text} ({self._given(parameters, point)})" for text, ok in holds if not np.all(ok)]
+                found += [f"{text} ({given(text, {**parameters, **point})})" for text, ok in holds if not np.all(ok)]
                 if found:
                     break
         return found
-
-    def _given(self, parameters: Mapping, point: Mapping) -> str:
-        return ", ".join(f"{w} = {v}" for w, v in {**parameters, **point}.items())
 
     def _si(self, parameters: Mapping, point: Mapping) -> tuple[dict, dict]:
         number, pi = self.arithmetic.number, self.arithmetic.pi

@@ -139,7 +139,7 @@ def reduced_form(closure: Closure, matrix: str = "full") -> Pair | Single:
     return pair(eliminated(closure, frame_series(closure, matrix), matrix), reduced)
 
 
-def block_series(closure: Closure, L: dict[int, Matrix]) -> tuple[dict, dict, dict, dict]:
+def block_series(closure: Closure, L: dict[int, Matrix]) -> tuple:
     """Return the blocks of a series of L, each without the orders that vanish."""
     parts = {n: blocks(closure, m) for n, m in L.items()}
     return tuple({n: b[i] for n, b in parts.items() if not b[i].is_zero_matrix} for i in range(4))
