@@ -18,6 +18,8 @@ _PLACES = {
     "eigenvalues": "stability.api",
     "tangent_matrix": "stability.api",
     "growth_map": "stability.analyses.growth_map",
+    "largest_growth": "stability.analyses.reductions",
+    "adaptive_map": "stability.analyses.adaptive",
     "neutral_curve": "stability.analyses.neutral_curve",
     "phase_diagram": "stability.analyses.phase_diagram",
     "certify": "stability.analyses.certify",

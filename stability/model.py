@@ -98,6 +98,11 @@ class Model:
         return 2 if self._closure["FORM"] == "Pair" else 1
 
     @property
+    def evolves(self) -> tuple[int, ...]:
+        """The diagonal of E: 1 for an evolution equation, 0 for a constraint."""
+        return self._closure["EVOLVES"]
+
+    @property
     def parameters(self) -> dict[str, Parameter]:
         """Return the records of every parameter of closure and flow, by word."""
         return merged(self._closure["PARAMETERS"], self._flow["PARAMETERS"])

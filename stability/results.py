@@ -2,6 +2,7 @@
 
 import json
 import platform
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,9 @@ VARIABLES = {
     "unstable_above": ("1", "1 where waves just shorter than the neutral one grow, 0 where they decay"),
     "unstable_longest": ("1", "1 where the longest waves of the range grow"),
     "unstable_shortest": ("1", "1 where the shortest waves of the range grow"),
+    "largest_growth_rate": ("1/s", "largest growth rate over all waves of the grid"),
+    "unstable_share": ("1", "part of the grid's waves whose growth rate is positive"),
+    "sampled": ("1", "1 where the growth rate was evaluated, 0 where it was interpolated"),
     "sign": ("1", "certified sign of the growth rate: 1 grows, -1 decays, 0 undecided"),
     "delta": ("1", "rate of dilation tr V/||V||"),
     "scaled_wavenumber": ("1", "Lambda epsilon = mu |xi|^2 epsilon/2"),
@@ -42,6 +46,7 @@ VARIABLES = {
 }
 
 
+@cache  # reading a package's metadata takes 3 ms, as long as a map of 2e5 samples
 def package_version(name: str) -> str:
     """Return the version of a package, or "not installed"."""
     try:

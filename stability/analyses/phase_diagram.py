@@ -90,6 +90,7 @@ def phase_diagram(
     delta: Any,
     scaled_wavenumber: Any,
     progress: Callable[[int, int], None] | None = None,
+    growth: bool = True,
 ) -> "results.xr.Dataset":
     """Return where D' is stable, unstable, or unstable at every wavelength, and its largest growth rate.
 
@@ -99,12 +100,14 @@ def phase_diagram(
     delta : 1-D, within (-sqrt 2, sqrt 2)
     scaled_wavenumber : 1-D, Lambda epsilon = mu |xi|^2 epsilon/2, positive
     progress : called with (columns done, columns in all)
+    growth : whether to search the directions for the growth rate; the regions alone need no sample
 
     Returns
     -------
-    Dataset with ``scaled_growth_rate``, ``worst_angle`` and ``region`` (delta, scaled_wavenumber), and the exact
-    boundary ``critical_scaled_wavenumber`` (delta). The attribute ``disagreements`` counts samples whose searched
-    sign differs from the exact region; a search can only miss a wedge narrower than its finest step.
+    Dataset with ``region`` and, with ``growth``, ``scaled_growth_rate`` and ``worst_angle`` (delta,
+    scaled_wavenumber), and the exact boundary ``critical_scaled_wavenumber`` (delta). The attribute ``disagreements``
+    counts samples whose searched sign differs from the exact region; a search can only miss a wedge narrower than its
+    finest step.
 
     Raises
     ------
@@ -120,23 +123,28 @@ def phase_diagram(
         raise SceneError(*filter(None, found))
     k = stress_ratio(friction_angle)
     boundary = critical(delta, k)
-    growth, angle = np.empty((2, delta.size, scaled.size))
-    for i, value in enumerate(delta):
-        growth[i], angle[i] = largest_growth(friction_angle, float(value), scaled)
-        if progress:
-            progress(i + 1, delta.size)
     region = np.where(np.isinf(boundary)[:, None], 2, np.where(scaled < boundary[:, None], 1, 0)).astype(np.int8)
     dims = ("delta", "scaled_wavenumber")
+    variables: dict = {"region": (dims, region), "critical_scaled_wavenumber": ("delta", boundary)}
+    confirmed = {}
+    if growth:
+        rate, angle = searched(friction_angle, delta, scaled, progress)
+        variables |= {"scaled_growth_rate": (dims, rate), "worst_angle": (dims, angle)}
+        confirmed["disagreements"] = int(((rate > 0) != (region > 0)).sum())
     return results.dataset(
-        {
-            "scaled_growth_rate": (dims, growth),
-            "worst_angle": (dims, angle),
-            "region": (dims, region),
-            "critical_scaled_wavenumber": ("delta", boundary),
-        },
+        variables,
         {"delta": delta, "scaled_wavenumber": scaled},
         closure="perturbed", flow="uniform_strain", matrix="truncated",
         parameters={"friction_angle": friction_angle},
-        stress_ratio=k, unstable_range=unstable_range(k), always_unstable_range=(0.0, min(k, 1.0)),
-        disagreements=int(((growth > 0) != (region > 0)).sum()),
+        stress_ratio=k, unstable_range=unstable_range(k), always_unstable_range=(0.0, min(k, 1.0)), **confirmed,
     )  # fmt: skip
+
+
+def searched(friction_angle: float, delta: np.ndarray, scaled: np.ndarray, progress: Any) -> tuple:
+    """Return growth rate and worst angle (delta, scaled_wavenumber) of `largest_growth`."""
+    found = np.empty((2, delta.size, scaled.size))
+    for i, value in enumerate(delta):
+        found[:, i] = largest_growth(friction_angle, float(value), scaled)
+        if progress:
+            progress(i + 1, delta.size)
+    return found[0], found[1]
