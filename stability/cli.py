@@ -1,9 +1,11 @@
 """The command ``stability``. Only click is imported here: each command imports what it needs when it runs."""
 
+import json
 import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
+from time import perf_counter
 from typing import Any
 
 import click
@@ -37,6 +39,12 @@ def complain(problem: str) -> None:
     click.echo(click.style("error: ", fg="red", bold=True) + problem, err=True, color=plain)
 
 
+def warn(sentence: str) -> None:
+    """Print a warning on standard error."""
+    plain = False if os.environ.get("NO_COLOR") else None
+    click.echo(click.style("warning: ", fg="yellow", bold=True) + sentence, err=True, color=plain)
+
+
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 
 
@@ -58,14 +66,43 @@ def run(scene: Path, output: Path | None, quiet: bool) -> None:
     checked = load_scene(scene)  # a bad scene is told before the libraries of results are loaded
     from stability import results, runner
 
+    start = perf_counter()
     result = runner.run(checked, progress=not quiet)
+    taken = perf_counter() - start
+    for warning in json.loads(result.attrs["plan_warnings"]):
+        warn(warning)
     try:
         results.save(result, output)
     except OSError as error:
         raise SceneError(f"--output {output} cannot be written: {error.strerror}") from None
     if not quiet:
         click.echo(runner.summary(result))
+        click.echo(
+            f"  {'cost':<15}{taken:.2g} s; {json.loads(result.attrs['plan'])['predicted_seconds']:.2g} s predicted"
+        )
         click.echo(f'\nwrote {output}; to open it: import stability; ds = stability.open_results("{output}")')
+
+
+@main.command(help=manual.EXPLAIN, short_help="Say how a scene would be modelled, and what that costs.")
+@click.argument("scene", type=click.Path(path_type=Path))
+def explain(scene: Path) -> None:
+    """Print the plan of SCENE without running it."""
+    from stability.plan import plan
+    from stability.scene import load_scene
+
+    checked = load_scene(scene)
+    found = plan(checked)
+    rows = [
+        ("matrix", found.matrix),
+        ("precision", f"{checked.tolerance.digits} digits" if checked.tolerance.digits else found.precision),
+        ("sampling", f"{found.sampling}, {found.samples} samples"),
+        ("error", f"{found.predicted_error:.2g} ({found.error_kind}), of the largest growth rate"),
+        ("cost", f"{found.predicted_seconds:.2g} s"),
+        ("reasons", "\n".join((" " * 17 + reason)[17 * (i == 0) :] for i, reason in enumerate(found.reasons))),
+    ]
+    click.echo("\n".join([checked.title, *(f"  {name:<15}{text}" for name, text in rows)]))
+    for warning in found.warnings:
+        warn(warning)
 
 
 def writable(output: Path, scene: Path) -> Path:

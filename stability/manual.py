@@ -15,6 +15,7 @@ equations.
 \b
 Examples:
   stability list flows                     which flows there are, and their parameters
+  stability explain figures/scenes/P2.1.toml   which model it would run, why, and at what cost
   stability run figures/scenes/P2.1.toml   growth rates of figure P2.1, into P2.1.nc
   stability derive perturbed --matrix truncated --format latex
 
@@ -58,14 +59,42 @@ A scene:
   wavenumber = { from = 1.0, to = 2e4, count = 400, spacing = "log" }
   wave_angle = { from = 0.0, to = 360.0, count = 1441 }
   matrix = "auto"                        # or full (D), truncated (D'), leading (M)
+  [tolerance]                            # left out: nothing is approximated
+  growth = 1e-3                          # of the largest growth rate
 
 \b
 Kinds of request:
-  growth_map      wavenumber, wave_angle, point, matrix
+  growth_map      wavenumber, wave_angle, point, matrix; sampling = "auto", "grid" or "adaptive"; frequency = true
+                  asks for it, false leaves it out
   neutral_curve   wave_angle, point, matrix; wavenumber = { from, to } limits the search; resolve = 0.05 inserts
                   directions until ln(wavenumber) steps by less along the curve
-  phase_diagram   delta, scaled_wavenumber; closure perturbed, flow uniform_strain, friction_angle alone
+  phase_diagram   delta, scaled_wavenumber; closure perturbed, flow uniform_strain, friction_angle alone;
+                  growth = false asks for the regions alone
 
-An axis is { from, to, count, spacing = "linear" or "log" }, both ends included, or a list of increasing numbers. A
-table [tolerance] (growth, sign) is checked and kept for later versions; nothing depends on it yet.
+An axis is { from, to, count, spacing = "linear" or "log" }, both ends included, or a list of increasing numbers.
+
+\b
+The table [tolerance] of a growth map, each entry optional:
+  growth    the error allowed, relative to the largest growth rate (to its own rate where a wave decays faster): the
+            cheapest matrix and precision that hold it are taken; without it nothing is approximated
+  accuracy  "draft" (float32), "standard" (float64), "certified" (float64, every sign proven), or "auto"
+  sign      "certified" asks for proven signs too
+  digits    evaluate in so many decimal digits (16 to 1000), and interpolate most of the map
+
+What a scene names (matrix, sampling, accuracy) is taken even where it misses the tolerance: a warning then says so. The
+plan, its reasons, and the predicted and true error are attributes of the result; stability explain SCENE shows the plan
+alone.
+"""
+
+EXPLAIN = """\
+Say how SCENE would be modelled, without running it: matrix, precision, sampling, why, with what error and cost.
+
+\b
+The ladder, the cheapest first:
+  matrix     leading (M), truncated (D'), full (D)
+  precision  draft (float32), standard (float64), certified (float64, every sign proven)
+  sampling   closed-form boundary, exact neutral curve, adaptive map, full grid
+
+Of matrix and precision the cheapest is taken whose error is within the tolerance: bounded where a bound suffices, else
+measured at some hundred waves of the grid and counted three times. figures/scenes/ladder/ holds a scene for each rung.
 """

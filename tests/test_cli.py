@@ -41,7 +41,7 @@ def test_the_first_page_says_what_it_does_how_to_start_and_what_the_statuses_mea
     page = call("--help").output
     for phrase in ("Linear stability", "stability run figures/scenes/P2.1.toml", "Exit status:", "0    done", "130"):
         assert phrase in page
-    for command in ("run", "list", "derive"):
+    for command in ("run", "explain", "list", "derive"):
         assert f"\n  {command} " in page
 
 
@@ -61,11 +61,34 @@ def test_a_run_writes_its_result_and_says_what_it_found(call, tmp_path):
     done = call("run", "scene.toml")
     assert done.exit_code == 0, done.output
     assert done.stdout.startswith("A scene of the tests\n")
+    assert "\n  cost " in done.stdout and "s predicted\n" in done.stdout
     assert "largest growth" in done.stdout and "wedge_angle = 15: theta_w is not given" in done.stdout
     assert done.stdout.endswith(
         'wrote scene.nc; to open it: import stability; ds = stability.open_results("scene.nc")\n'
     )
     assert open_results(tmp_path / "scene.nc").attrs["scene_text"] == GOOD
+
+
+def test_a_plan_is_explained_without_a_run(call, tmp_path):
+    done = call("explain", "scene.toml")
+    assert done.exit_code == 0, done.output
+    for phrase in (
+        "matrix         full",
+        "precision      standard",
+        "sampling       grid, 15 samples",
+        "cost ",
+        "reasons ",
+    ):
+        assert f"\n  {phrase}" in done.stdout
+    assert [p.name for p in tmp_path.iterdir()] == ["scene.toml"]
+
+
+def test_a_rung_that_misses_the_tolerance_is_warned_of_on_standard_error(call, tmp_path):
+    (tmp_path / "scene.toml").write_text(GOOD + 'matrix = "leading"\n[tolerance]\ngrowth = 1e-3\n')
+    for command in (["explain", "scene.toml"], ["run", "scene.toml", "--quiet"]):
+        done = call(*command)
+        assert done.exit_code == 0
+        assert done.stderr.startswith("warning: the tolerance growth = 0.001 may be missed")
 
 
 def test_a_quiet_run_prints_nothing(call, tmp_path):
@@ -106,7 +129,7 @@ def test_a_place_that_cannot_be_written_is_refused_before_the_run(output, says, 
     ids=["convergence", "precision", "interrupted"],
 )
 def test_a_failure_has_its_status_and_no_traceback(raised, status, says, call, monkeypatch, tmp_path):
-    def fails(scene, report):
+    def fails(scene, planned, report):
         raise raised
 
     monkeypatch.setitem(runner.KINDS, "growth_map", fails)

@@ -187,7 +187,15 @@ ONE_FAULT = {
     '[request] wave_angle[1] = "x" should be a valid number': ("45.0,", '"x",'),
     '[request] matrix = "ful" should be': ("[request]", '[request]\nmatrix = "ful"'),
     "[tolerance] growth = 2.0 should be less than 1": ("[request]", "[tolerance]\ngrowth = 2.0\n[request]"),
-    '[tolerance] sign = "certified" asks for proven signs': ("[request]", '[tolerance]\nsign = "certified"\n[request]'),
+    '[tolerance] sign = "proven" should be': ("[request]", '[tolerance]\nsign = "proven"\n[request]'),
+    '[tolerance] accuracy = "rough" should be': ("[request]", '[tolerance]\naccuracy = "rough"\n[request]'),
+    "[tolerance] digits = 8 should be greater than or equal to 16": ("[request]", "[tolerance]\ndigits = 8\n[request]"),
+    '[request] sampling = "random" should be': ("[request]", '[request]\nsampling = "random"'),
+    '[request] sampling = "grid" excludes [tolerance] digits': (
+        "[request]", '[tolerance]\ndigits = 30\n[request]\nsampling = "grid"'),
+    "[request] frequency = 1 should be a valid boolean": ("[request]", "[request]\nfrequency = 1"),
+    '[request] frequency = true needs matrix = "full"': (
+        "[request]", '[request]\nfrequency = true\nmatrix = "leading"'),
     "[tolerance] sgin is unknown; did you mean sign?": ("[request]", '[tolerance]\nsgin = "float"\n[request]'),
 }  # fmt: skip
 
@@ -198,6 +206,19 @@ def test_one_fault_is_one_sentence_about_its_place(sentence, problems):
     assert GOOD.count(good) >= 1
     (found,) = problems(GOOD.replace(good, bad, 1))
     assert found.startswith(sentence)
+
+
+def test_a_draft_that_must_be_proven_is_refused(problems):
+    (found,) = problems(GOOD + '[tolerance]\naccuracy = "draft"\nsign = "certified"\n')
+    assert found.startswith("[tolerance] = {") and "asks for a draft (float32) and for more at once" in found
+
+
+def test_what_only_a_map_can_hold_is_refused_elsewhere(load, problems):
+    assert load(DIAGRAM + "[tolerance]\ngrowth = 1e-3\n").tolerance.growth == 1e-3
+    found = problems(DIAGRAM + '[tolerance]\nsign = "certified"\ndigits = 30\n')
+    assert found == [
+        '[tolerance] sign = "certified" belongs to a growth_map', "[tolerance] digits = 30 belongs to a growth_map"
+    ]  # fmt: skip
 
 
 def test_every_broken_condition_of_the_flow_is_reported(problems):

@@ -25,7 +25,7 @@ class Scene:
     parameters : words to numbers, printed and assumed together, in SI units, angles in degrees
     assumed : words to reasons, for those numbers that the paper does not print
     request : what is asked; its class is that of its kind in `shape`
-    tolerance : checked and kept; no analysis of this version depends on it
+    tolerance : what the result must hold; `plan` decides how
     text, path : the file, so that a result can carry it
     """
 

@@ -36,7 +36,7 @@ MEANING = {
     "parameters": 'the numbers printed in the paper, each alone or as { value = 34.0, why = "..." }',
     "assumed": 'the numbers that are not printed, each as { value = 15.0, why = "..." }',
     "request": "the table that says what is asked, with its kind",
-    "tolerance": "a table with growth and sign",
+    "tolerance": "a table with growth, sign, accuracy and digits",
     "kind": f"what is asked, one of {', '.join(REQUESTS)}",
     "value": "a number in SI units, an angle in degrees, without quotes",
     "why": 'the reason, as in { value = 15.0, why = "theta_w is not given" }',
@@ -51,7 +51,12 @@ MEANING = {
     "spacing": "the spacing of the samples",
     "matrix": "the tangent matrix: full is D (P3), truncated D' (P7), leading M (P4); auto lets the toolkit choose",
     "resolve": "the largest step of ln(wavenumber) along a neutral curve: directions are inserted until it holds",
-    "growth": "the relative tolerance of the largest growth rate",
+    "growth": "the tolerance relative to the largest growth rate; in a phase diagram, whether growth is asked for",
+    "sampling": "how a map is sampled: grid evaluates every wave, adaptive interpolates; auto lets the toolkit choose",
+    "frequency": "whether the frequency is asked for, true or false",
+    "sign": "float, or certified where signs must be proven",
+    "accuracy": "the precision: draft (float32), standard (float64), certified (proven signs) or auto",
+    "digits": "the decimal digits of an evaluation in multiprecision",
 }
 
 LONGEST = 60  # characters of a wrong value that a message repeats

@@ -3,6 +3,7 @@
 The file need not have the right shape here: what has none is left to `messages.fitted`, so that both report together.
 """
 
+import json
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
@@ -17,7 +18,7 @@ from stability.errors import SceneError
 from stability.flows import FLOWS
 from stability.model import Model
 from stability.parameters import FRICTION_ANGLE, Parameter, merged
-from stability.scene.messages import nearest, unknown
+from stability.scene.messages import REQUESTS, nearest, unknown
 
 MAX_SIZE = 50_000_000  # samples of one result: their growth rates and frequencies fill 0.8 GB
 
@@ -29,6 +30,7 @@ AXES = (
     Parameter("scaled_wavenumber", "L", "1", 0, inf, "scaled wavenumber Lambda epsilon", "paper, P9"),
 )
 AT_A_POINT = ("growth_map", "neutral_curve")  # the kinds of request that look at one point of a flow
+MAP_ONLY = {"sign": ("float",), "accuracy": ("auto", "standard"), "digits": ()}  # and what every kind may say of them
 DIAGRAM = {"closure": "perturbed", "flow": "uniform_strain"}  # what a phase diagram is drawn for
 
 
@@ -60,7 +62,7 @@ def physics(raw: dict) -> list[str]:
                     Model(raw["closure"], raw["flow"]).base(constants, point)
             except SceneError as error:
                 found += error.problems
-    return [*found, *_axes(request)]
+    return [*found, *_axes(request), *_demands(request, _table(raw, "tolerance"))]
 
 
 def _table(raw: dict, name: str) -> dict:
@@ -126,6 +128,18 @@ def _coordinates(given: Any, records: tuple[Parameter, ...]) -> tuple[dict, list
         else:
             found.append(f"[request] point.{record.word} is missing: it is {record.described}, in {record.range}")
     return good, found
+
+
+def _demands(request: dict, tolerance: dict) -> Iterator[str]:
+    """Yield what is asked in combinations that nothing can give."""
+    asked = [word for word, plain in MAP_ONLY.items() if tolerance.get(word) not in (None, *plain)]
+    if request.get("kind") in REQUESTS and request["kind"] != "growth_map":
+        for word in asked:
+            yield f"[tolerance] {word} = {json.dumps(tolerance[word], default=str)} belongs to a growth_map"
+    elif request.get("sampling") == "grid" and "digits" in asked:
+        yield '[request] sampling = "grid" excludes [tolerance] digits: they are too dear for a full grid'
+    if request.get("frequency") is True and request.get("matrix") in ("truncated", "leading"):
+        yield f'[request] frequency = true needs matrix = "full": "{request["matrix"]}" leaves out the Doppler shift'
 
 
 def _axes(request: dict) -> Iterator[str]:

@@ -100,13 +100,18 @@ Matrix = Literal["auto", "full", "truncated", "leading"]
 
 
 class GrowthMap(Table):
-    """Growth rate and frequency over wavenumber and direction."""
+    """Growth rate and frequency over wavenumber and direction.
+
+    ``frequency`` true asks for it, which only D has; None leaves it out where a cheaper matrix will do.
+    """
 
     kind: Literal["growth_map"]
     point: dict[str, float] = {}
     wavenumber: Axis
     wave_angle: Axis
     matrix: Matrix = "auto"
+    sampling: Literal["auto", "grid", "adaptive"] = "auto"
+    frequency: bool | None = None
 
 
 class NeutralCurve(Table):
@@ -121,25 +126,42 @@ class NeutralCurve(Table):
 
 
 class PhaseDiagram(Table):
-    """Stable, unstable and ill-posed over the rate of dilation and the scaled wavenumber."""
+    """Stable, unstable and ill-posed over the rate of dilation and the scaled wavenumber.
+
+    ``growth`` false asks for the regions alone, which the boundary in closed form decides.
+    """
 
     kind: Literal["phase_diagram"]
     delta: Axis
     scaled_wavenumber: Axis
+    growth: bool = True
 
 
 class Tolerance(Table):
-    """What a result must hold. It is checked and kept; no analysis of this version depends on it."""
+    """What a result must hold; `plan` picks the cheapest model that does.
+
+    ``growth`` is relative to the largest growth rate, and for a wave that decays faster than that to its own rate.
+    ``accuracy`` names a precision: draft is float32, standard float64, certified float64 with proven signs, which is
+    what ``sign`` certified asks for too. ``digits`` evaluates in multiprecision.
+    """
 
     growth: float | None = Field(default=None, gt=0, lt=1)
     sign: Literal["float", "certified"] = "float"
+    accuracy: Literal["auto", "draft", "standard", "certified"] = "auto"
+    digits: int | None = Field(default=None, ge=16, le=1000)
 
-    @field_validator("sign")
-    @classmethod
-    def _available(cls, sign: str) -> str:
-        if sign == "certified":
-            raise ValueError('asks for proven signs, which this version cannot give: use "float" or leave it out')
-        return sign
+    @model_validator(mode="after")
+    def _consistent(self) -> "Tolerance":
+        if self.accuracy == "draft" and (self.digits or self.sign == "certified"):
+            raise ValueError(
+                'asks for a draft (float32) and for more at once: leave out accuracy = "draft", or the rest'
+            )
+        return self
+
+    @property
+    def certified(self) -> bool:
+        """Whether signs must be proven."""
+        return "certified" in (self.sign, self.accuracy)
 
 
 Request = Annotated[GrowthMap | NeutralCurve | PhaseDiagram, Field(discriminator="kind")]
