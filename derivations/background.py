@@ -1,6 +1,7 @@
 """Numbers of a base state: the jets of a flow at a point, and what the package's matrices are there."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 
 from sympy import Expr, Matrix, N, Rational, Symbol, cos, pi, sin
@@ -8,9 +9,9 @@ from sympy import Expr, Matrix, N, Rational, Symbol, cos, pi, sin
 from stability.closures.base import Closure
 from stability.closures.drucker_prager import RIGID_PLASTIC
 from stability.flows.base import Flow
-from stability.flows.radial_hopper import g, r_0, r_1, theta_w, varphi_w
+from stability.flows.radial_hopper import R, g, pressure, r_0, r_1, theta_w, varphi_w
 from stability.linearise import imbalance, letter_gradients
-from stability.symbols import body_force, epsilon, gradient, hessian, r, theta, varphi
+from stability.symbols import body_force, epsilon, gradient, hessian, p, r, theta, varphi
 from stability.tangent import tangent
 
 PRECISION = 60
@@ -48,7 +49,9 @@ def letters_of(flow: Flow, parameters: Mapping[Symbol, Expr]) -> Values:
 @cache
 def derivatives(flow: Flow) -> dict[Symbol, Expr]:
     """Return value, gradient and second gradient of every field at the point, and gravity, as expressions."""
-    return flow.jet() | dict(zip(body_force, flow.body_force, strict=True))
+    # p0 as (R7) has it; `radial` proves that the regrouped form which the flow computes with is the same.
+    as_printed = replace(flow, fields={p: pressure(R)}).jet()
+    return flow.jet() | as_printed | dict(zip(body_force, flow.body_force, strict=True))
 
 
 def state(flow: Flow, point: Values, closure: Closure = RIGID_PLASTIC, reverse: bool = False) -> Values:

@@ -17,6 +17,7 @@ from stability.flows.radial_hopper import (
     Psi_w,
     g,
     pressure,
+    pressure_regrouped,
     r_0,
     r_1,
     speed,
@@ -129,6 +130,8 @@ def fields() -> list[Verdict]:
     prefactor = solve(axis_balance().subs(in_w).as_numer_denom()[0], K)
     printed_F2 = (w + 2) / (w - 1) * (1 - (r_0 / r_1) ** (w - 1)) / (1 - (r_0 / r_1) ** (w + 2))
     h = symbols("h", positive=True)  # r_0/r_1
+    ahead = symbols("z", positive=True)
+    regrouped = (pressure_regrouped(ahead * r_0) - pressure(ahead * r_0).subs(F, sqrt(printed_F2))).subs(r_0, h * r_1)
     at_inlet = pressure(r_1).subs(F, sqrt(printed_F2)).subs(r_0, h * r_1).subs((1 / h) ** w, h**-w)
     speed_out = sqrt(g * r_0) * F * (1 - 2 * theta_w * Psi_w * (theta / theta_w) ** 2) * r_0 / r
     here = derivatives(RADIAL_HOPPER)
@@ -148,7 +151,11 @@ def fields() -> list[Verdict]:
             right="`p_0 = g r_0/(1−sin φ_f) [...]`, the same bracket",
             corrected=g * r_0,
             note="the only prefactor for which radial momentum holds on the axis, identically in r",
-            proofs=[len(prefactor) == 1, ANYTHING.vanishes(pressure(z * r_0) - g * r_0 / (1 - sin(varphi)) * bracket)],
+            proofs=[
+                len(prefactor) == 1,
+                regrouped.simplify() == 0,
+                ANYTHING.vanishes(pressure(z * r_0) - g * r_0 / (1 - sin(varphi)) * bracket),
+            ],
         ),
         compare(
             "F²",

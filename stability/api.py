@@ -9,7 +9,7 @@ from stability.balls import LAST_BITS
 from stability.closures import CLOSURES
 from stability.errors import PrecisionError, SceneError
 from stability.flows import FLOWS
-from stability.model import MATRICES, Model, check_waves, unknown_matrix
+from stability.model import MATRICES, Model, check_range, check_waves, unknown_matrix
 
 MACHINE_RTOL = 1e-15  # a few roundings: what a correctly rounded result may need
 
@@ -51,7 +51,7 @@ def eigenvalues(
     Raises
     ------
     SceneError : a parameter, a point or a wave outside its range
-    PrecisionError : with ``rtol``, a growth rate that cannot be told from zero
+    PrecisionError : a value beyond the range of float64; with ``rtol``, a growth rate that cannot be told from zero
     """
     if digits is not None:
         from stability.precise import eigenvalues as precise
@@ -62,12 +62,14 @@ def eigenvalues(
     if rtol is not None:
         return _guaranteed(closure, flow, parameters, point, wavenumber, wave_angle, matrix, rtol)
     form = Model(closure, flow).base(parameters, point).form(wave_angle, matrix)
-    found = form.eigenvalues(wavenumber)
+    with np.errstate(all="ignore"):
+        found = form.eigenvalues(wavenumber)
+    check_range(found, wavenumber, wave_angle)
     return np.stack(spectrum.leading_first(*found) if len(found) == 2 else found, axis=-1)
 
 
 def _guaranteed(*question: Any) -> np.ndarray:
-    from stability.enclosures import guaranteed
+    from stability.guaranteed import guaranteed
 
     if not MACHINE_RTOL <= question[-1] < 1:
         raise SceneError(f"rtol = {question[-1]!r} lies outside [{MACHINE_RTOL:g}, 1): float64 cannot hold more digits")

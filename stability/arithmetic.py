@@ -61,9 +61,13 @@ def _float(value: Any) -> Any:
     return np.asarray(value, dtype=float) if np.ndim(value) else float(value)
 
 
+def _turned(degrees: Any, a: Arithmetic) -> tuple[Any, Any]:
+    return cosine_sine(np.fmod(degrees, 360), a)  # fmod is exact, for angles of any size
+
+
 NUMPY = Arithmetic(
     "float64", _float, complex, lambda p, q: p / q, np.where, np.floor, np.pi,
-    np.sqrt, np.sin, np.cos, np.tan, np.arcsin, np.arctan, np.exp, np.log, cosine_sine, np.asarray,
+    np.sqrt, np.sin, np.cos, np.tan, np.arcsin, np.arctan, np.exp, np.log, _turned, np.asarray,
 )  # fmt: skip
 
 

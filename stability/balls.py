@@ -6,7 +6,7 @@ python-flint is the extra ``certify``. Without it the same expressions run in `m
 from fractions import Fraction
 from functools import cache
 from importlib.util import find_spec
-from math import inf, isfinite, nan, nextafter
+from math import inf, isfinite, nextafter
 from typing import Any
 
 from stability.arithmetic import Arithmetic, cosine_sine
@@ -22,7 +22,9 @@ def available() -> bool:
 
 def exact(value: Any) -> Fraction:
     """Return a decimal, or a float as the decimal that it prints as, as a fraction."""
-    return Fraction(repr(float(value)) if isinstance(value, float) else str(value))  # a NumPy float says its type in repr
+    return Fraction(
+        repr(float(value)) if isinstance(value, float) else str(value)
+    )  # repr of a NumPy float has its type
 
 
 def enclosing(bits: int) -> Arithmetic:
@@ -42,12 +44,18 @@ def exact_float(value: float, arithmetic: Arithmetic) -> Any:
 
 
 def float_enclosure(ball: Any, arithmetic: Arithmetic) -> tuple[float, float]:
-    """Return a float64 number and how far from it the ball may reach; (nan, inf) where float64 has no such number."""
+    """Return a float64 number and how far from it the ball may reach: inf where float64 has no such number."""
     centre = arithmetic.centre(ball)
     if not isfinite(centre):
-        return nan, inf
+        return centre, inf
     gap = ball - exact_float(centre, arithmetic)
-    return centre, 0.0 if gap == 0 else nextafter(arithmetic.size(gap) * INFLATION, inf)
+    reach = arithmetic.size(gap) * INFLATION
+    return centre, 0.0 if gap == 0 else nextafter(reach, inf) if reach < inf else inf
+
+
+def upper(ball: Any) -> Any:
+    """Return a bound of the modulus, as a ball: it may lie outside the range of float64."""
+    return ball.abs_upper() if hasattr(ball, "abs_upper") else abs(ball).b
 
 
 @cache
@@ -66,8 +74,9 @@ def arb_balls(bits: int) -> Arithmetic:
     return Arithmetic(
         name=f"Arb, {bits} bits", number=number, complex=acb, rational=lambda p, q: arb(fmpq(p, q)),
         where=lambda c, a, b: a if c else b, floor=lambda a: a.floor(), pi=arb.pi(),
-        sqrt=lambda a: arb(a).sqrt(), sin=lambda a: arb(a).sin(), cos=lambda a: arb(a).cos(), tan=lambda a: arb(a).tan(),
-        asin=lambda a: arb(a).asin(), atan=lambda a: arb(a).atan(), exp=lambda a: arb(a).exp(), log=lambda a: arb(a).log(),
+        sqrt=lambda a: arb(a).sqrt(), sin=lambda a: arb(a).sin(), cos=lambda a: arb(a).cos(),
+        tan=lambda a: arb(a).tan(), asin=lambda a: arb(a).asin(), atan=lambda a: arb(a).atan(),
+        exp=lambda a: arb(a).exp(), log=lambda a: arb(a).log(),
         direction=cosine_sine, centre=lambda a: float(arb(a).mid()), size=lambda a: float(arb(a).abs_upper()),
         unit=arb(0, 1),
     )  # fmt: skip
@@ -102,7 +111,7 @@ def intervals(bits: int) -> Arithmetic:
         return iv.mpf([low, high])
 
     return Arithmetic(
-        name=f"mpmath intervals, {bits} bits", number=number, complex=None, rational=lambda p, q: iv.mpf(p) / q,
+        name=f"mpmath intervals, {bits} bits", number=number, complex=iv.mpc, rational=lambda p, q: iv.mpf(p) / q,
         where=lambda c, a, b: a if c else b, floor=floor, pi=+iv.pi, sqrt=lambda a: iv.sqrt(a), sin=lambda a: iv.sin(a),
         cos=lambda a: iv.cos(a), tan=lambda a: iv.sin(a) / iv.cos(a), asin=rising(mp.asin), atan=rising(mp.atan),
         exp=lambda a: iv.exp(a), log=lambda a: iv.log(a), direction=cosine_sine,

@@ -1,7 +1,7 @@
 """Float64 numbers that carry a bound of their own error: the running error analysis of any generated expression.
 
-A `Bounded` stands for every real number within ``error`` of ``value``. With the unit roundoff u = 2^-53 each operation adds
-its own rounding to what it inherits:
+A `Bounded` stands for every real number within ``error`` of ``value``. With the unit roundoff u = 2^-53 each operation
+adds its own rounding to what it inherits:
 
     a + b      ea + eb                              + u |value|
     a b        |a| eb + |b| ea + ea eb              + u |value| + tiny
@@ -9,11 +9,13 @@ its own rounding to what it inherits:
     sqrt a     ea/sqrt(a), or sqrt(ea) at a = 0     + u |value|
     f(a)       ea times the largest |f'| near a     + 8 u |value|           library functions err by 4 units at most
 
-``tiny`` covers underflow and is left out only where a factor is exactly zero. Products of errors are kept, so the bounds hold to all orders but for the rounding of the errors
-themselves, which some hundred operations raise by at most 1e-12 relative; `INFLATION` covers that. Bounds are met with equality only
-if all roundings conspire: measured medians are 10 to 100 times the true error (tests/test_bounded.py).
+``tiny`` covers underflow and is left out only where a factor is exactly zero. Products of errors are kept, so the
+bounds hold to all orders but for the rounding of the errors themselves, which some hundred operations raise by at most
+1e-12 relative; `INFLATION` covers that. Bounds are met with equality only if all roundings conspire: the measured
+median is 65 times the true error of a coefficient (tests/test_bounded.py).
 """
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -24,8 +26,10 @@ from stability.arithmetic import NUMPY, Arithmetic, cosine_sine
 UNIT = 2.0**-53
 LIBRARY = 8 * UNIT  # twice the 4 units in the last place that NumPy's vectorised functions may err
 TINY = 2.0**-1073
-WHOLE_TURNS = 2.0**46  # degrees: quarter turns beyond are taken off with rounding errors
 INFLATION = 1 + 1e-9
+EXTENDED = np.finfo(np.longdouble).nmant >= 63  # on x86; elsewhere directions are known to 8 u only
+PI = np.longdouble("3.14159265358979323846264338327950288")
+LONG = replace(NUMPY, pi=PI, rational=lambda p, q: np.longdouble(p) / q)
 
 
 class Bounded:
@@ -135,15 +139,21 @@ def number(value: Any) -> Bounded:
 def direction(degrees: Any, _: Any = None) -> tuple[Bounded, Bounded]:
     """Return cosine and sine of exact float64 angles in degrees; exact at the axes, and only there.
 
-    The reduced angle in radians errs by 3 u relative, so the cosine by 3 u |angle sine| beside the library's error.
+    From extended precision, where there is one, only the rounding to float64 is left. In float64 the reduced angle in
+    radians errs by 3 u relative, so the cosine by 3 u |angle sine| beside the library's error.
     """
-    c, s = cosine_sine(degrees, NUMPY)
+    degrees = np.fmod(degrees, 360.0)  # exact; cosine_sine takes quarter turns off without rounding only near zero
+    if EXTENDED:
+        c, s = (np.asarray(f, dtype=float) for f in cosine_sine(np.asarray(degrees, np.longdouble), LONG))
+    else:
+        c, s = cosine_sine(degrees, NUMPY)
     rest = np.abs(degrees - 90 * np.floor(degrees / 90 + 0.5))
     reduced = np.deg2rad(rest)
 
     def error(f: Any, slope: Any) -> Any:
-        found = LIBRARY * np.abs(f) + 4 * UNIT * reduced * np.abs(slope) + TINY
-        return np.where(rest == 0, 0.0, np.where(np.abs(degrees) < WHOLE_TURNS, found, np.inf))
+        found = 1.5 * UNIT * np.abs(f) if EXTENDED else LIBRARY * np.abs(f) + 4 * UNIT * reduced * np.abs(slope)
+        found = found + TINY
+        return np.where(rest == 0, 0.0, found)
 
     return Bounded(c, error(c, s)), Bounded(s, error(s, c))
 
@@ -154,7 +164,7 @@ def rational(p: int, q: int) -> Bounded:
 
 
 def steepest_tangent(tangent: Any, e: Any) -> Any:
-    """Return a bound of the slope within e: tan(a + e) <= T + 2 e (1 + T^2) if e (1 + T) < 1/4, else the pole is near."""
+    """Return a bound of the slope within e of T = |tan|: tan <= T + 2 e (1 + T^2) there if e (1 + T) < 1/4."""
     return np.where(e * (1 + tangent) < 0.25, 1 + (tangent + 2 * e * (1 + tangent**2)) ** 2, np.inf)
 
 

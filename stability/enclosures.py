@@ -1,8 +1,9 @@
-"""Eigenvalues with a guarantee: enclosures in balls, error bounds in float64, and the one where the other does not do.
+"""Eigenvalues with their errors: bounds in float64, enclosures in balls.
 
-A computed eigenvalue lambda solves ``x^2 - g x + f = 0`` for its distance x to an exact one, with ``f = lambda^2 - Tr lambda + Det`` and
-``g = 2 lambda - Tr`` of the exact coefficients. The nearer root obeys |x| <= 2 |f|/|g|, so bounds of f and g, by running error
-analysis, bound the error of whatever method found lambda.
+A computed eigenvalue lambda solves ``x^2 - g x + f = 0`` for its distance x to an exact one, with
+``f = lambda^2 - Tr lambda + Det`` and ``g = 2 lambda - Tr`` of the exact coefficients. The nearer root obeys
+|x| <= 2 |f|/|g|, so bounds of f and g, by running error analysis, bound the error of whatever method found lambda. Two
+values farther apart than their bounds are near two roots.
 """
 
 from typing import Any
@@ -11,40 +12,9 @@ import numpy as np
 
 from stability import spectrum
 from stability.arithmetic import Arithmetic
-from stability.balls import FIRST_BITS, LAST_BITS, enclosing
+from stability.balls import exact_float, float_enclosure, upper
 from stability.bounded import INFLATION, Bounded
-from stability.certified import Certifier, Tally, exact_float
 from stability.model import Form
-
-
-def guaranteed(
-    closure: Any, flow: Any, parameters: dict, point: dict, wavenumber: Any, wave_angle: Any, matrix: str, rtol: float
-) -> tuple[np.ndarray, Tally]:
-    """Return eigenvalues (waves..., modes) whose real parts err by less than ``rtol`` relative, and how each was reached.
-
-    float64 with its own error bound first; where that is too large, balls of doubling precision. A real part that is
-    still not separated from zero at `LAST_BITS` is returned as the centre of its enclosure and tallied as undecided.
-    Waves are the given float64 numbers; parameters and point are decimals.
-    """
-    q, angle = np.broadcast_arrays(np.asarray(wavenumber, float), np.asarray(wave_angle, float))
-    certifier, tally = Certifier(closure, flow, parameters, point, matrix), Tally()
-    q, angle, shape = q.ravel(), angle.ravel(), q.shape
-    found, error = bounded_eigenvalues(certifier.float_base.form(angle, matrix), q)
-    with np.errstate(invalid="ignore"):
-        good = np.all(error <= rtol * np.abs(found.real), axis=-1)
-    tally.add("float64", np.count_nonzero(good))
-    for i in np.flatnonzero(~good):
-        bits, decided = FIRST_BITS, False
-        while not decided and bits <= LAST_BITS:
-            row = enclosed_eigenvalues(certifier.form(angle[i], bits), float(q[i]))
-            decided = all(radius <= rtol * abs(value.real) for value, radius in row)
-            name = enclosing(bits).name
-            bits *= 2
-        tally.add(name if decided else "undecided", 1)
-        if not decided:
-            tally.undecided.append((float(angle[i]), float(q[i])))
-        found[i] = [value for value, _ in row]
-    return found.reshape(*shape, -1), tally
 
 
 def bounded_eigenvalues(form: Form, wavenumber: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -59,13 +29,37 @@ def bounded_eigenvalues(form: Form, wavenumber: np.ndarray) -> tuple[np.ndarray,
             found, errors = [real.value + 1j * imaginary.value], [real.bound]
         else:
             plain = {part: {n: centre(c) for n, c in series.items()} for part, series in form.coefficients.items()}
-            found = list(spectrum.leading_first(*spectrum.pair(plain, wavenumber)))
+            found = list(spectrum.pair(plain, wavenumber))
             trace, determinant = (spectrum.values(form.coefficients[part], q) for part in ("trace", "determinant"))
             errors = [distance(trace, determinant, value) for value in found]
+            apart = np.abs(found[0] - found[1]) > (errors[0] + errors[1]) * INFLATION  # else both may be near one root
+            errors = [np.where(apart, e, np.inf) for e in errors]
     speed = form.speed if isinstance(form.speed, Bounded) else Bounded(form.speed)
-    shifted = [value - 1j * (speed.value * wavenumber) for value in found]
-    errors = [np.where(np.isfinite(v) & np.isfinite(e), e, np.inf) for v, e in zip(found, errors, strict=True)]
-    return np.stack(shifted, axis=-1), np.stack(errors, axis=-1)
+    shifted = np.stack([value - 1j * (speed.value * wavenumber) for value in found], axis=-1)
+    bound = np.stack(errors, axis=-1)
+    return ordered(shifted, np.where(np.isfinite(shifted) & np.isfinite(bound), bound, np.inf))
+
+
+def within(value: Any, error: Any, rtol: float) -> Any:
+    """Return whether the exact real part is certain to lie within rtol, relative to itself, of the value's."""
+    return error * (1 + rtol) <= rtol * np.abs(value.real)
+
+
+def ordered(found: np.ndarray, error: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return eigenvalues (waves, modes) and bounds of their errors by decreasing real part.
+
+    Real parts that the bounds do not separate tie, and the imaginary part decides, as for conjugate pairs; the gap then
+    counts as an error.
+    """
+    if found.shape[-1] == 1:
+        return found, error
+    one, other = found[..., 0], found[..., 1]
+    with np.errstate(invalid="ignore"):  # inf - inf: not apart
+        gap, reach = one.real - other.real, error.sum(axis=-1)
+    tie = ~(np.abs(gap) > reach)
+    swap = np.where(tie, one.imag < other.imag, gap < 0)[..., None]
+    error = np.where(tie, np.abs(gap), 0.0)[..., None] + error
+    return np.where(swap, found[..., ::-1], found), np.where(swap, error[..., ::-1], error)
 
 
 def distance(trace: tuple, determinant: tuple, value: np.ndarray) -> np.ndarray:
@@ -89,15 +83,16 @@ def spread(number: Any, like: np.ndarray) -> Bounded:
 
 
 def enclosed_eigenvalues(form: Form, wavenumber: float) -> list[tuple[complex, float]]:
-    """Return (centre, radius of the real part) of every eigenvalue in ball arithmetic, leading one first."""
+    """Return (centre, radius of the real part) of every eigenvalue in ball arithmetic, as `ordered` has them."""
     a = form.arithmetic
-    q = exact_float(wavenumber, a)
+    q = exact_float(float(wavenumber), a)
     parts = [spectrum.single_parts(form.coefficients, q)] if "trace" not in form.coefficients else ball_pair(form, q)
     rows = []
     for real, imaginary in parts:
-        value = complex(a.centre(real), a.centre(imaginary - form.speed * q))
-        rows.append((value, a.size(real - a.number(value.real)) * INFLATION))
-    return sorted(rows, key=lambda row: -row[0].real)
+        growth, radius = float_enclosure(real, a)
+        rows.append((complex(growth, a.centre(imaginary - form.speed * q)), radius))
+    values, radii = ordered(np.array([[v for v, _ in rows]]), np.array([[e for _, e in rows]]))
+    return [(complex(v), float(e)) for v, e in zip(values[0], radii[0], strict=True)]
 
 
 def ball_pair(form: Form, q: Any) -> list[tuple[Any, Any]]:
@@ -117,15 +112,15 @@ def ball_pair(form: Form, q: Any) -> list[tuple[Any, Any]]:
 
 
 def radius(ball: Any, a: Arithmetic) -> float:
-    """Return an upper bound of how far a ball reaches from its centre."""
-    return a.size(ball - a.number(a.centre(ball)))
+    """Return an upper bound of how far a ball reaches from the nearest float to its centre."""
+    return float_enclosure(ball, a)[1]
 
 
 def complex_root(x: Any, y: Any, a: Arithmetic) -> tuple[Any, Any]:
     """Return a square root of x + i y in real ball arithmetic; which of the two does not matter."""
     modulus = a.sqrt(x * x + y * y)
-    if not modulus > 0:  # the balls contain zero: so do both parts, within the root of the modulus
-        reach = a.sqrt(a.number(a.size(modulus)))
+    if not modulus > 0:  # the balls contain zero: so do both parts, within the root of the largest modulus
+        reach = a.sqrt(upper(x) + upper(y))
         return reach * a.unit, reach * a.unit
     if a.centre(x) >= 0:
         real = a.sqrt((modulus + x) / 2)

@@ -15,7 +15,7 @@ import numpy as np
 from stability import codegen, spectrum
 from stability.arithmetic import NUMPY, Arithmetic
 from stability.closures import CLOSURES
-from stability.errors import SceneError
+from stability.errors import PrecisionError, SceneError
 from stability.flows import FLOWS
 from stability.parameters import Parameter, merged, problems, radians, to_si
 
@@ -34,6 +34,17 @@ def check_waves(wavenumber: np.ndarray, wave_angle: np.ndarray) -> None:
         )
     if not np.all(np.isfinite(wave_angle)):
         raise SceneError("wave_angle holds values that are not finite: give degrees")
+
+
+def check_range(found: tuple, wavenumber: np.ndarray, wave_angle: np.ndarray) -> None:
+    """Raise `PrecisionError` if an eigenvalue left the range of float64 on the way."""
+    lost = ~np.all([np.isfinite(e) for e in found], axis=0)
+    if np.any(lost):
+        q, angle = (np.broadcast_to(v, lost.shape)[lost].flat[0] for v in (wavenumber, wave_angle))
+        raise PrecisionError(
+            f"{np.count_nonzero(lost)} eigenvalues leave the range of float64, the first at wavenumber {q:g} 1/m, "
+            f"wave_angle {angle:g} deg: change the units or the range, or use rtol= or digits= of stability.eigenvalues"
+        )
 
 
 def unknown_matrix(matrix: Any) -> str:
@@ -135,7 +146,8 @@ class Model:
         if not found:
             constants, place = self._si(parameters, point)
             for stage in ("conditions", "letter_conditions"):
-                holds = self._functions[1][stage](place, constants)
+                with np.errstate(all="ignore"):  # what does not exist is not fulfilled, and is said in words
+                    holds = self._functions[1][stage](place, constants)
                 found += [f"{text} ({given(text, {**parameters, **point})})" for text, ok in holds if not np.all(ok)]
                 if found:
                     break

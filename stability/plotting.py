@@ -183,6 +183,8 @@ def _facts(ds: Dataset) -> Iterator[str]:
         x, y, mass = (ds[n].item() for n in ("momentum_residual_x", "momentum_residual_y", "mass_residual"))
         missed = f"by {np.hypot(x, y):.1g} m/s2 in its momentum and {abs(mass):.1g} 1/s in its mass balance"
         yield f"Base state at {point}: it misses a steady flow {missed}."
+    if (sign := ds.attrs.get("sign", "")).startswith("certified"):
+        yield f"Signs of the growth rate: {sign}."
 
 
 def save(figure: Figure, folder: str | Path, name: str, caption: str) -> list[Path]:

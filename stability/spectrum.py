@@ -161,7 +161,7 @@ def moduli(series: Series, wavenumber: Any) -> tuple[Any, Any]:
 def leading_first(one: Any, other: Any, xp: Any = np) -> tuple[Any, Any]:
     """Return two eigenvalues by decreasing real part; parts equal to rounding tie, and the imaginary part decides."""
     gap = one.real - other.real
-    tie = abs(gap) <= TIE * abs(one)
+    tie = (abs(gap) <= TIE * abs(one)) & ((one.real > 0) == (other.real > 0))  # a growing mode always leads
     first = xp.where(tie, one.imag >= other.imag, gap > 0)
     return xp.where(first, one, other), xp.where(first, other, one)
 

@@ -1,7 +1,6 @@
 """Certified signs of a stored growth map: all of its samples, or some of them."""
 
 import json
-from typing import Any
 
 import numpy as np
 
@@ -22,8 +21,9 @@ def certify(ds: "results.xr.Dataset", samples: int | None = None, seed: int = 0)
     Returns
     -------
     Dataset with ``sign``: 1 grows, -1 decays, 0 undecided (a tie up to `certified.LAST_BITS` bits). Attributes:
-    ``sign_decided``, the count of samples by arithmetic; ``sign_disagreements``, how many float64 growth rates had another
-    sign; ``sign_undecided``, the (wave_angle, wavenumber) of the ties; ``sign``, the summary in words.
+    ``sign_decided``, the count of samples by arithmetic; ``sign_disagreements``, how many float64 growth rates had
+    another sign; ``sign_undecided``, the wave and the point of every tie, with growth rate and radius of its enclosure;
+    ``sign``, the summary in words.
 
     Raises
     ------
@@ -40,15 +40,18 @@ def certify(ds: "results.xr.Dataset", samples: int | None = None, seed: int = 0)
         draw = np.random.default_rng(seed).choice(total, samples, replace=False)
         chosen = np.isin(np.arange(total), draw).reshape(growth.shape)
     sign, tally = np.sign(growth).astype(np.int8), Tally()
+    ties: list[dict] = []  # the point of every tie
     wavenumber, wave_angle = ds.wavenumber.values, ds.wave_angle.values
     parameters = json.loads(ds.attrs["parameters"])
     coordinates = [c for c in ds.coords if c not in ("wavenumber", "wave_angle")]
     for index in np.ndindex(growth.shape[:-2]):
         point = {c: float(ds[c].values[index]) for c in coordinates}
         one = Certifier(ds.attrs["closure"], ds.attrs["flow"], parameters, point, ds.attrs["matrix"])
-        sign[index] = np.where(
-            chosen[index], one.signs(wavenumber, wave_angle, tally, chosen[index]), sign[index]
-        )
+        sign[index] = np.where(chosen[index], one.signs(wavenumber, wave_angle, tally, chosen[index]), sign[index])
+        ties += [point] * (len(tally.undecided) - len(ties))
+    told = zip(ties, tally.undecided, tally.enclosures, strict=True)
+    names = ("wave_angle", "wavenumber", "growth_rate", "radius")
+    undecided = [point | dict(zip(names, (*wave, *enclosure), strict=True)) for point, wave, enclosure in told]
     float_sign = np.sign(growth)
     disagreements = int(((sign != 0) & (sign != float_sign)).sum())
     dims = ds.growth_rate.dims
@@ -58,7 +61,7 @@ def certify(ds: "results.xr.Dataset", samples: int | None = None, seed: int = 0)
         sign=summary(tally, disagreements),
         sign_decided=tally.by,
         sign_disagreements=disagreements,
-        sign_undecided=tally.undecided,
+        sign_undecided=undecided,
     )
 
 
@@ -67,6 +70,6 @@ def summary(tally: Tally, disagreements: int) -> str:
     count = sum(tally.by.values())
     shares = ", ".join(f"{name} {100 * n / count:.4g} %" for name, n in tally.by.items())
     beyond = f"; beyond float64: {arithmetic_note()}" if set(tally.by) - {"float64"} else ""
-    return f"certified: {count} samples decided by {shares}{beyond}; {disagreements} float64 growth rates had another sign"
-
-
+    return (
+        f"certified: {count} samples decided by {shares}{beyond}; {disagreements} float64 growth rates had another sign"
+    )

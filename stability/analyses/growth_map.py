@@ -8,7 +8,7 @@ import numpy as np
 
 from stability import fast, results, sweep
 from stability.errors import SceneError
-from stability.model import Model, check_waves
+from stability.model import Model, check_range, check_waves
 
 BLOCK = sweep.TASK  # samples between two reports of progress
 
@@ -88,6 +88,8 @@ def growth_map(
     shape, dtype = (grid.rows, wavenumber.size), np.float32 if grid.draft else float
     whole = Whole(np.empty(shape, dtype), np.empty(shape, dtype) if frequency else None)
     sweep.run(grid, lambda: whole, threads, progress, BLOCK)
+    if not np.isfinite(whole.growth.sum()):  # one pass; a sum is finite unless a term is not, or all are near the limit
+        check_range((whole.growth,), wavenumber, np.tile(wave_angle, residual.size)[:, None])
 
     dims, full = (*place, "wave_angle", "wavenumber"), (*residual.shape, wave_angle.size, wavenumber.size)
     for name, values in (("growth_rate", whole.growth), ("frequency", whole.frequency)):

@@ -34,6 +34,18 @@ def pressure(rho):
     return g * r_0 / (1 - sin(varphi)) * bracket
 
 
+def pressure_regrouped(rho):
+    """Return the same p0, F^2 written out and z^w gathered into (rho/r_1)^w: what is computed.
+
+    As printed, the coefficient of z^w is a difference of two nearly equal numbers and z^w overflows, which costs all
+    digits of p0 from a friction angle of some 75 degrees on. That the two are equal is proved in `derivations.radial`.
+    """
+    z, ratio = rho / r_0, r_0 / r_1
+    rest = 1 - ratio ** (w + 2)
+    bracket = z - (1 - ratio ** (w - 1)) / rest / z**2 - (rho / r_1) ** w * (1 / ratio - ratio**2) / rest
+    return g * r_0 / (1 - sin(varphi)) * bracket / (w - 1)
+
+
 def speed(rho, angle):
     """Return the speed towards the apex (R9)."""
     return sqrt(g * r_0) * F * (1 - 2 * theta_w * Psi_w * (angle / theta_w) ** 2) * r_0 / rho
@@ -55,7 +67,7 @@ RADIAL_HOPPER = Flow(
     name="radial_hopper",
     title="Approximate radial hopper flow",
     source="paper, appendix (R2) to (R10), corrected",
-    fields={u: VELOCITY[0], v: VELOCITY[1], p: pressure(R)},
+    fields={u: VELOCITY[0], v: VELOCITY[1], p: pressure_regrouped(R)},
     body_force=(-g * cos(theta), g * sin(theta)),
     point=(
         Parameter("r", "r", "m", 0, inf, "distance from the apex", "paper, appendix"),
@@ -88,9 +100,9 @@ RADIAL_HOPPER_COMPATIBLE = Flow(
     title="Radial hopper flow that satisfies the perturbed mass balance",
     source="paper, appendix, with u + epsilon grad p0 so that (P1.1) holds",
     fields={
-        u: VELOCITY[0] + epsilon * pressure(R).diff(x),
-        v: VELOCITY[1] + epsilon * pressure(R).diff(y),
-        p: pressure(R),
+        u: VELOCITY[0] + epsilon * pressure_regrouped(R).diff(x),
+        v: VELOCITY[1] + epsilon * pressure_regrouped(R).diff(y),
+        p: pressure_regrouped(R),
     },
     body_force=RADIAL_HOPPER.body_force,
     point=RADIAL_HOPPER.point,
