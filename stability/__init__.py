@@ -22,6 +22,7 @@ _PLACES = {
     "adaptive_map": "stability.analyses.adaptive",
     "neutral_curve": "stability.analyses.neutral_curve",
     "phase_diagram": "stability.analyses.phase_diagram",
+    "enclosure": "stability.proof",
     "certify": "stability.analyses.certify",
     "load_scene": "stability.scene",
     "run": "stability.runner",

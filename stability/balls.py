@@ -22,9 +22,7 @@ def available() -> bool:
 
 def exact(value: Any) -> Fraction:
     """Return a decimal, or a float as the decimal that it prints as, as a fraction."""
-    return Fraction(
-        repr(float(value)) if isinstance(value, float) else str(value)
-    )  # repr of a NumPy float has its type
+    return Fraction(repr(float(value)) if isinstance(value, float) else str(value))  # a NumPy float's repr has its type
 
 
 def enclosing(bits: int) -> Arithmetic:
@@ -68,6 +66,8 @@ def arb_balls(bits: int) -> Arithmetic:
     def number(value: Any) -> Any:
         if isinstance(value, arb):
             return value
+        if isinstance(value, int):
+            return arb(value)
         fraction = exact(value)
         return arb(fmpq(fraction.numerator, fraction.denominator))
 

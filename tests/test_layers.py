@@ -24,7 +24,7 @@ LAYERS = [
     {"model"},
     {"results", "precise", "enclosures", "hoisted"},
     {"certified", "sweep", "probe"},
-    {"guaranteed"},
+    {"guaranteed", "proof"},
     {"analyses"},
     {f"analyses.{n}" for n in ("growth_map", "reductions", "adaptive", "neutral_curve", "phase_diagram", "certify")},
     {"api"},

@@ -38,7 +38,11 @@ def test_decimals_are_not_floats(perturbed_hopper):
 
 @pytest.mark.parametrize(
     ("digits", "point", "sentence"),
-    [(0, POINT, "digits = 0"), (True, POINT, "digits = True"), (20, {"r": [1, 1.1], "theta": [0, 0]}, "takes one point")],
+    [
+        (0, POINT, "digits = 0"),
+        (True, POINT, "digits = True"),
+        (20, {"r": [1, 1.1], "theta": [0, 0]}, "takes one point"),
+    ],
 )
 def test_what_cannot_be_asked_is_refused(perturbed_hopper, digits, point, sentence):
     with pytest.raises(SceneError, match=sentence):
