@@ -22,8 +22,8 @@ from typing import Any
 
 from stability.registry import Registry
 
-# Modules whose text decides what is generated, beside the entry's own.
-PIPELINE = ("symbols", "parameters", "closures.base", "flows.base", "linearise", "tangent", "codegen", "emit")
+# Modules, and packages with all that is in them, whose text decides what is generated, beside the entry's own module.
+PIPELINE = "arithmetic closures codegen emit errors flows linearise parameters registry symbols tangent".split()
 
 
 def cache_folder() -> Path:
@@ -33,12 +33,21 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "granular-stability"
 
 
+def sources(place: str) -> list[Path]:
+    """Return the files that decide the module generated for ``module:ATTRIBUTE``."""
+    here = Path(__file__).parent
+    found = {path for name in PIPELINE for path in ((here / name).rglob("*.py") if (here / name).is_dir() else ())}
+    found |= {here / f"{name}.py" for name in PIPELINE if not (here / name).is_dir()}
+    own = getattr(find_spec(place.split(":")[0]), "origin", None)
+    return sorted(found | {Path(str(own))})
+
+
 @cache
 def signature(place: str) -> str:
     """Return the hash of everything that decides the module generated for ``module:ATTRIBUTE``; imports no SymPy."""
     digest = hashlib.sha256(f"{place}\0{sys.version_info[:2]}\0sympy {version('sympy')}".encode())
-    for name in (*(f"stability.{m}" for m in PIPELINE), place.split(":")[0]):
-        digest.update(Path(str(getattr(find_spec(name), "origin", None))).read_bytes())
+    for path in sources(place):
+        digest.update(path.read_bytes())
     return digest.hexdigest()
 
 

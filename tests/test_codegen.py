@@ -1,7 +1,10 @@
 """Generated modules: the same numbers in every arithmetic, and a cache that is never trusted."""
 
 import multiprocessing
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -75,6 +78,17 @@ def test_the_signature_follows_the_text_of_the_sources(monkeypatch):
     monkeypatch.setattr(codegen, "version", lambda name: "0.0")
     assert codegen.signature.__wrapped__(place) != before
     assert codegen.signature.__wrapped__(FLOWS.place("uniform_strain")) != codegen.signature.__wrapped__(place)
+
+
+@pytest.mark.parametrize("registry", [CLOSURES, FLOWS])
+def test_the_signature_covers_every_module_that_deriving_imports(registry):
+    script = "import sys\nfrom stability import emit\nfrom importlib import import_module\n"
+    for name in registry:
+        place = registry.place(name)
+        run = script + f"import_module({place.split(':')[0]!r})\nprint(*[m.__file__ for n, m in sys.modules.items() "
+        run += "if n.startswith('stability.') and m.__file__], sep='\\n')"
+        said = subprocess.run([sys.executable, "-c", run], capture_output=True, text=True, check=True).stdout
+        assert {Path(p) for p in said.splitlines()} <= set(codegen.sources(place))
 
 
 def race(folder, results):
