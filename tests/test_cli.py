@@ -162,7 +162,14 @@ def test_an_interrupt_ends_a_long_run_with_its_status_and_without_a_file(tmp_pat
     (tmp_path / "long.toml").write_text(long.replace("count = 3", "count = 301"))
     command = [sys.executable, "-m", "stability", "run", "long.toml"]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True) as running:
+
+    def heeding() -> None:
+        signal.signal(
+            signal.SIGINT, signal.SIG_DFL
+        )  # a shell's background job, such as a CI run, is started deaf to it
+
+    options = {"cwd": tmp_path, "env": environment, "stderr": subprocess.PIPE, "text": True, "preexec_fn": heeding}
+    with subprocess.Popen(command, **options) as running:
         heartbeat = running.stderr.readline()  # the run has begun, and says so where there is no terminal
         running.send_signal(signal.SIGINT)
         rest = running.stderr.read()
