@@ -105,3 +105,10 @@ def test_eigenvalues_from_a_warm_cache_need_no_sympy(perturbed_hopper):
     )
     loaded_after(ask)
     assert not {"sympy", "matplotlib"} & loaded_after(ask)
+
+
+def test_running_a_figures_scene_from_a_warm_cache_needs_no_sympy_and_no_matplotlib():
+    scene = PACKAGE.parent / "figures" / "scenes" / "P2.1.toml"
+    run = f"import stability as st\nst.run({str(scene)!r})"
+    loaded_after(run)
+    assert not {"sympy", "matplotlib"} & loaded_after(run)
