@@ -32,7 +32,7 @@ def eigenvalues(
 
     Parameters
     ----------
-    closure, flow : registered names, or a `Closure` and a `Flow`
+    closure, flow : registered names, ``my_file.py:NAME``, or a `Closure` and a `Flow`
     parameters : words to numbers, SI units, angles in degrees
     point : coordinates of the flow's point (angles in degrees), {} for a uniform flow
     wavenumber : 1/m, positive; broadcasts against wave_angle
@@ -46,7 +46,8 @@ def eigenvalues(
     Returns
     -------
     complex array, broadcast shape of wavenumber and wave_angle + (modes,), in 1/s; mpmath numbers with ``digits``. One
-    mode under the constraint div u = 0 (the projection's zero eigenvalue belongs to no disturbance), else two.
+    mode under the constraint div u = 0 (the projection's zero eigenvalue belongs to no disturbance), two for the
+    perturbed system; in general as many as the pencil ``lambda E a = L a`` has finite eigenvalues.
 
     Raises
     ------
@@ -88,7 +89,7 @@ def tangent_matrix(closure: Any, flow: Any = None, matrix: str = "full") -> "Imm
 
     Parameters
     ----------
-    closure : a registered name or a `Closure`
+    closure : a registered name, ``my_file.py:NAME``, or a `Closure`
     flow : a registered name or a `Flow` whose base state is written out in place of the letters; None keeps them
     matrix : "full" (D: L3.1, P3), "truncated" (D', P7) or "leading" (M, P4)
 

@@ -36,7 +36,7 @@ def pair(t: fast.Table, rows: slice, growth: np.ndarray, frequency: np.ndarray |
 
 @cache
 def kernels() -> tuple[Any, Any]:
-    """Return the compiled functions, without and with the frequency; numba is imported here and nowhere else.
+    """Return the compiled functions, without and with the frequency; numba is imported here.
 
     Loops run from 0 over slices: LLVM makes vectors only of indices that cannot be negative.
     """

@@ -7,12 +7,14 @@ from sympy import Expr, ImmutableMatrix, Symbol, cse, numbered_symbols
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.str import StrPrinter
 
+from stability import records
 from stability.closures.base import Closure
 from stability.flows.base import Flow
-from stability.linearise import imbalance, letter_gradients, letters, pencil
+from stability.linearise import Pencil, imbalance, letter_gradients, letters, pencil
 from stability.parameters import Parameter
+from stability.structure import galilean, modes
 from stability.symbols import body_force, gradient, hessian
-from stability.tangent import MATRICES, Pair, Single, reduced_form
+from stability.tangent import MATRICES, NoClosedFormError, Pair, Single, reduced_form, truncated
 
 FUNCTIONS = "sqrt sin cos tan asin atan exp log pi rational"
 
@@ -106,6 +108,14 @@ def unpacking(fields: Iterable) -> str:
     return f"{nested(state_names(fields))} = state"
 
 
+def closed_forms(closure: Closure) -> dict[str, Pair | Single]:
+    """Return the reduced forms of D, D' and M, or nothing where the pencil itself must be solved."""
+    try:
+        return {matrix: reduced_form(closure, matrix) for matrix in MATRICES}
+    except NoClosedFormError:
+        return {}
+
+
 def closure_source(closure: Closure) -> str:
     """Return the generated module of a closure."""
     own_letters = [(str(s), e) for s, e in letters(closure).items()]
@@ -121,17 +131,21 @@ def closure_source(closure: Closure) -> str:
         return function(name, arguments, unpack + extra, [used, slopes, results], result)
 
     balance = [(f"balance_{i}", e) for i, e in enumerate(imbalance(closure))]
+    forms = closed_forms(closure)
+    count, rank = (2 if isinstance(forms["full"], Pair) else 1, 0) if forms else modes(closure)
     return module(
         closure,
         [
-            *(of_state(matrix, *form_text(reduced_form(closure, matrix))) for matrix in MATRICES),
-            of_state("pencil", *pencil_text(closure)),
+            *(of_state(matrix, *form_text(form)) for matrix, form in forms.items()),
+            of_state("pencil", *pencil_text(pencil(closure))),
+            *([of_state("pencil_truncated", *pencil_text(truncated(closure)))] if forms else ()),
             of_state("imbalance", balance, nested([name for name, _ in balance]), more="body_force"),
             function("letters", "state, parameters", unpack, [own_letters], named(own_letters)),
         ],
-        FORM=type(reduced_form(closure)).__name__,
-        EVOLVES=closure.evolves,
-        FIELDS=tuple(tuple(map(str, f)) if isinstance(f, tuple) else str(f) for f in closure.fields),
+        FORM=type(forms["full"]).__name__ if forms else "General",
+        MODES=count,
+        RANK=rank,
+        GALILEAN=galilean(closure),
     )
 
 
@@ -146,9 +160,9 @@ def form_text(form: Pair | Single) -> tuple[list[tuple[str, Expr]], str]:
     return assignments, "{" + ", ".join(parts) + "}"
 
 
-def pencil_text(closure: Closure) -> tuple[list[tuple[str, Expr]], str]:
+def pencil_text(P: Pencil) -> tuple[list[tuple[str, Expr]], str]:
     """Return the assignments of the entries of L2, L1 and L0, and the text of their nested tuple."""
-    P, axes = pencil(closure), (0, 1)
+    axes = (0, 1)
     assignments: list[tuple[str, Expr]] = []
 
     def matrix(name: str, entries: ImmutableMatrix) -> str:
@@ -185,7 +199,7 @@ def flow_source(flow: Flow) -> str:
         function("conditions", "point, parameters", unpack, [], conditions(bare)),
         function("letter_conditions", "point, parameters", unpack, [constants], conditions(derived)),
     ]
-    return module(flow, functions, POINT=flow.point, AXIS=flow.axis)
+    return module(flow, functions)
 
 
 def conditions(pairs: Iterable[tuple[Expr, str]]) -> str:
@@ -204,21 +218,12 @@ def condition(relation: Expr) -> str:
 
 def module(entry: Closure | Flow, functions: list[str], **constants: Any) -> str:
     """Return a whole module: constants, then ``build(arithmetic)``."""
-    constants = {
-        "NAME": entry.name,
-        "TITLE": entry.title,
-        "SOURCE": entry.source,
-        "PARAMETERS": entry.parameters,
-        **constants,
-    }
     names = [f.split("(")[0].split()[-1] for f in functions]
     unpack = "\n".join(f"    {name} = arithmetic.{name}" for name in FUNCTIONS.split())
     exported = ", ".join(f"{n!r}: {n}" for n in names)
     return (
-        f'"""Generated from {entry.name} ({entry.source}). Do not edit."""\n'
-        "from math import inf\nfrom stability.parameters import Parameter\n\n"
-        + "\n".join(f"{name} = {value!r}" for name, value in constants.items())
-        + f"\n\n\ndef build(arithmetic):\n{unpack}\n\n"
+        records.source(entry, **constants)
+        + f"\n\ndef build(arithmetic):\n{unpack}\n\n"
         + "\n".join(functions)
         + f"\n    return {{{exported}}}\n"
     )

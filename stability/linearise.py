@@ -12,8 +12,9 @@ the matrices are real.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from itertools import count
 
-from sympy import Expr, I, ImmutableMatrix, Matrix, Symbol, diag, expand, solve, zeros
+from sympy import Expr, I, ImmutableMatrix, Matrix, Symbol, cse, diag, expand, solve, zeros
 
 from stability.closures.base import Closure
 from stability.symbols import gradient, hessian, symbol
@@ -55,12 +56,13 @@ class Rewriter:
     """Rewrites derivatives of the raw state in letters, which keeps everything that follows short.
 
     The closure's own letters come first. What they leave over, or everything in a closure that declares none, gets the
-    letters m_0, m_1, ..., one for each different entry that is not a polynomial in the raw state.
+    letters m_0, m_1, ..., one for each different entry that is not a polynomial in the raw state, and, in
+    `shared_letters`, one for each expression that these have in common: their gradients are then short too.
     """
 
     def __init__(self, closure: Closure):
         self.raw = {*closure.q, *closure.g}
-        self.letters = dict(closure.letters)
+        self.letters, self.own = dict(closure.letters), len(closure.letters)
         self.patterns, equations = [], []
         for letter in varying(closure, self.letters):
             definition = self.letters[letter]
@@ -77,15 +79,23 @@ class Rewriter:
         short = derivative.subs(self.patterns)
         if derivative.is_polynomial(*self.raw):  # such as -u_x, the moduli of inertia: short as it is
             return derivative
-        in_letters = expand(short.subs(self.solution))
+        # Expanding cancels raw symbols against each other once letters stand for some; without any it only costs.
+        in_letters = expand(short.subs(self.solution)) if self.solution else short
         if not in_letters.free_symbols & self.raw:
             return in_letters
         for letter, definition in self.letters.items():
             if definition == derivative:
                 return letter
-        letter = symbol(f"m_{sum(str(s).startswith('m_') for s in self.letters)}")
+        letter = symbol(f"m_{len(self.letters) - self.own}")
         self.letters[letter] = derivative
         return letter
+
+    def shared_letters(self) -> dict[Symbol, Expr]:
+        """Return all letters, those that others are defined by first."""
+        own, new = (list(self.letters.items())[part] for part in (slice(self.own), slice(self.own, None)))
+        names = (symbol(f"m_{i}") for i in count(len(new)))
+        common, short = cse([definition for _, definition in new], symbols=names, order="none")
+        return dict([*own, *common, *zip((letter for letter, _ in new), short, strict=True)])
 
 
 def varying(closure: Closure, letters: Mapping[Symbol, Expr]) -> list[Symbol]:
@@ -115,7 +125,7 @@ def moduli(closure: Closure) -> Moduli:
         Fg=tuple(tuple(derivative(F[a], g[b]) for b in (0, 1)) for a in (0, 1)),
         Sq=derivative(closure.supply, q),
         Sg=tuple(derivative(closure.supply, g[b]) for b in (0, 1)),
-        letters=rewritten.letters,
+        letters=rewritten.shared_letters(),
         patterns=tuple(rewritten.patterns),
     )
 

@@ -5,18 +5,19 @@ direction. That needs a frame-indifferent closure, which a test holds for each r
 """
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from stability import codegen, spectrum
+from stability import codegen
 from stability.arithmetic import NUMPY, Arithmetic
 from stability.closures import CLOSURES
 from stability.errors import PrecisionError, SceneError
 from stability.flows import FLOWS
+from stability.forms import Form
 from stability.parameters import Parameter, merged, problems, radians, to_si
 
 # A flow that satisfies a constraint analytically misses it by a few roundings, some 1e-16 of the velocity gradient.
@@ -50,6 +51,14 @@ def check_range(found: tuple, wavenumber: np.ndarray, wave_angle: np.ndarray) ->
 def unknown_matrix(matrix: Any) -> str:
     """Return the sentence that names the matrices there are."""
     return f"matrix = {matrix!r} is unknown: use one of {', '.join(MATRICES)}"
+
+
+def no_truncation(name: str) -> str:
+    """Return the sentence that refuses D' and M of a closure without closed forms, or M's pencil."""
+    return (
+        f'closure {name} has no such pencil: use matrix = "full"; D\' is that of closures with two velocities and one '
+        "constraint, and M is no reduction of a pencil"
+    )
 
 
 def given(sentence: str, values: Mapping) -> str:
@@ -105,13 +114,23 @@ class Model:
 
     @property
     def modes(self) -> int:
-        """How many eigenvalues a wave has: 1 under a constraint that does not see the pressure, else 2."""
-        return 2 if self._closure["FORM"] == "Pair" else 1
+        """How many eigenvalues a wave has: those of its pencil that are finite."""
+        return self._closure["MODES"]
+
+    @property
+    def closed(self) -> bool:
+        """Whether eigenvalues have a closed form (two velocities and one constraint); else the pencil is solved."""
+        return self._closure["FORM"] != "General"
 
     @property
     def evolves(self) -> tuple[int, ...]:
         """The diagonal of E: 1 for an evolution equation, 0 for a constraint."""
         return self._closure["EVOLVES"]
+
+    @property
+    def fields(self) -> tuple:
+        """The names of the closure's fields; a vector is a pair."""
+        return self._closure["FIELDS"]
 
     @property
     def parameters(self) -> dict[str, Parameter]:
@@ -128,8 +147,21 @@ class Model:
         """What wave angle 0 means."""
         return self._flow["AXIS"]
 
+    def missing_fields(self) -> list[str]:
+        """Return one sentence if the flow does not provide every field of the closure."""
+        needed = [c for f in self.fields for c in (f if isinstance(f, tuple) else (f,))]
+        missing = [c for c in needed if c not in self._flow["FIELDS"]]
+        if not missing:
+            return []
+        return [
+            f"{self.closure_name} needs the field{'s' * (len(missing) > 1)} {', '.join(missing)}, which "
+            f"{self.flow_name} does not provide: it has {', '.join(self._flow['FIELDS'])}; choose another flow"
+        ]
+
     def problems(self, parameters: Mapping, point: Mapping) -> list[str]:
         """Return everything that is wrong with parameters and point, one sentence each."""
+        if missing := self.missing_fields():
+            return missing
         found = problems(self.parameters, parameters, "[parameters]")
         for name in point:
             if name not in self.point:
@@ -173,11 +205,10 @@ class Model:
         closure, flow = self._functions
         jets = flow["state"](place, constants)
         state = tuple(
-            tuple(zip(*(jets[c] for c in f), strict=True)) if isinstance(f, tuple) else jets[f]
-            for f in self._closure["FIELDS"]
+            tuple(zip(*(jets[c] for c in f), strict=True)) if isinstance(f, tuple) else jets[f] for f in self.fields
         )
         base = Base(self, constants, state, flow["body_force"](place, constants), flow["letters"](place, constants))
-        if self.modes == 1:
+        if self._closure["FORM"] == "Single":
             self._check_constraint(base)
         return base
 
@@ -221,12 +252,15 @@ class Base:
         """Return div F - S of each balance law: how far the base state is from a steady solution."""
         return self.model._functions[0]["imbalance"](self.state, self.parameters, self.body_force)
 
-    def pencil(self) -> tuple:
-        """Return L2[a][b], L1[a] and L0 of `linearise.pencil`, in the flow's local frame."""
-        return self.model._functions[0]["pencil"](self.state, self.parameters)
+    def pencil(self, matrix: str = "full") -> tuple:
+        """Return L2[a][b], L1[a] and L0 of `linearise.pencil`, in the flow's local frame; those of D' if truncated."""
+        names = {"full": "pencil", "truncated": "pencil_truncated"}
+        if matrix not in names or names[matrix] not in self.model._functions[0]:
+            raise SceneError(no_truncation(self.model.closure_name) if matrix in MATRICES else unknown_matrix(matrix))
+        return self.model._functions[0][names[matrix]](self.state, self.parameters)
 
-    def form(self, wave_angle: Any, matrix: str = "full") -> "Form":
-        """Return the reduced form of D, D' or M for waves in the given direction.
+    def form(self, wave_angle: Any, matrix: str = "full") -> Form:
+        """Return the reduced form of D, D' or M for waves in the given direction, or the pencil where there is none.
 
         Parameters
         ----------
@@ -236,40 +270,31 @@ class Base:
         if matrix not in MATRICES:
             raise SceneError(unknown_matrix(matrix))
         c, s = self.model.arithmetic.direction(wave_angle, self.model.arithmetic)
+        if not self.model.closed:
+            return self._general(c, s, matrix)
         turned = tuple(tuple(rotated(tensor, c, s) for tensor in jet) for jet in self.state)
         coefficients = self.model._functions[0][matrix](turned, self.parameters)
         along = turned[0][0][0] if matrix == "full" else 0
         return Form(coefficients, along, self.model.arithmetic)
 
+    def resting(self) -> tuple["Base", tuple]:
+        """Return the base state as an observer sees it who moves along, and the velocity that was taken off.
 
-@dataclass(frozen=True)
-class Form:
-    """The coefficients of the eigenvalues of a wave in powers of i|xi|, and the flow's speed along the wave."""
+        It stays where it does more than shift the frequency; left in elsewhere, its roundings were the growth rate's.
+        """
+        first = self.state[0]
+        if not (self.model._closure["GALILEAN"] and isinstance(self.model.fields[0], tuple)):
+            return self, (0, 0)
+        velocity, *slopes = first
+        return replace(self, state=((tuple(0.0 for _ in velocity), *slopes), *self.state[1:])), velocity
 
-    coefficients: dict
-    speed: Any
-    arithmetic: Arithmetic = NUMPY
+    def _general(self, c: Any, s: Any, matrix: str) -> Any:
+        if matrix != "full":
+            raise SceneError(no_truncation(self.model.closure_name))
+        from stability.general import General, along_direction  # not needed by closures with closed forms
 
-    def _each(self, change: Callable) -> "Form":
-        parts = {part: {n: change(c) for n, c in series.items()} for part, series in self.coefficients.items()}
-        return replace(self, coefficients=parts, speed=change(self.speed))
-
-    def filled(self, size: int) -> "Form":
-        """Return the form with every coefficient an array over the directions, constants too."""
-        return self._each(lambda c: np.broadcast_to(np.asarray(c, dtype=float), (size,)))
-
-    def column(self) -> "Form":
-        """Return the form of many directions with a trailing axis for wavenumbers."""
-        return self._each(lambda c: c[:, None] if np.ndim(c) else c)
-
-    def rows(self, index: Any) -> "Form":
-        """Return the form at some of its directions."""
-        return self._each(lambda c: c[index] if np.ndim(c) else c)
-
-    def eigenvalues(self, wavenumber: Any) -> tuple:
-        """Return the eigenvalues (1/s), Doppler shift included."""
-        if "trace" in self.coefficients:
-            found: tuple = spectrum.pair(self.coefficients, wavenumber, self.arithmetic)
-        else:
-            found = (spectrum.single(self.coefficients, wavenumber),)
-        return tuple(e - 1j * (self.speed * wavenumber) for e in found)
+        resting, velocity = self.resting()
+        m = self.model
+        series = along_direction(resting.pencil(), c, s)
+        speed = c * velocity[0] + s * velocity[1]
+        return General(m.closure_name, m.evolves, m.modes, m._closure["RANK"], series, speed, m.arithmetic)

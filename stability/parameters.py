@@ -29,6 +29,17 @@ class Parameter:
     meaning: str
     source: str
 
+    def __post_init__(self) -> None:
+        if not (isinstance(self.low, int | float) and isinstance(self.high, int | float) and self.low < self.high):
+            raise ValueError(
+                f"parameter {self.word} has no range: low and high must be numbers and low < high, "
+                f"got {self.low!r} and {self.high!r}"
+            )
+
+        for end in ("low", "high"):
+            if type(value := getattr(self, end)) not in (int, float):  # NumPy's own are no text that code can read
+                object.__setattr__(self, end, float(value))
+
     def problem(self, value: Any, where: str = "parameter") -> str | None:
         """Return the sentence that says what is wrong with ``value``, or None."""
         try:

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stability.closures import CLOSURES
 from stability.codegen import write_atomically
+from stability.flows import FLOWS
 from stability.model import Base, Model
 
 # name: (unit, meaning). The one list of what a result may hold.
@@ -39,11 +41,49 @@ VARIABLES = {
     "pressure": ("m2/s2", "average stress over density"),
     "viscosity": ("m2/s", "mu = k p/||V||"),
     "strain_rate_norm": ("1/s", "||V||"),
-    "dilation": ("1", "delta = tr A of the base state"),
+    "dilation": ("1", "delta = tr V/||V||"),
     "momentum_residual_x": ("m/s2", "steady momentum balance of the base state along the flow's axis"),
     "momentum_residual_y": ("m/s2", "steady momentum balance of the base state across the flow's axis"),
     "mass_residual": ("1/s", "steady mass balance of the base state"),
+    "exponent": (
+        "1",
+        "n in sup Re lambda ~ coefficient |xi|^n, of the fastest short waves; of the slowest decay if stable",
+    ),
+    "coefficient": ("SI", "coefficient of that law, m^n/s"),
+    "short_wave_angle": ("deg", "direction of the largest coefficient, in [0, 180)"),
+    "narrowing": ("1", "growing directions about a single one narrow as |xi|^-narrowing; 0 for wedges"),
+    "wedge_from": ("deg", "direction at which waves begin to grow with that exponent"),
+    "wedge_to": ("deg", "direction at which they cease to, counted on from the first"),
+    "fastest_growth_rate": ("1/s", "largest growth rate found over waves of every length"),
+    "fastest_wavenumber": ("1/m", "wavenumber of that wave"),
+    "fastest_wave_angle": ("deg", "direction of that wave"),
+    "time": ("s", "simulated time of a snapshot"),
+    "velocity_r": ("m/s", "velocity away from the apex"),
+    "velocity_theta": ("m/s", "velocity across the rays, away from the axis"),
+    "step": ("1", "number of the accepted time step"),
+    "step_time": ("s", "simulated time at the end of the step"),
+    "step_size": ("s", "size of the time step"),
+    "newton_iterations": ("1", "iterations of Newton's method in the accepted try"),
+    "factorisations": ("1", "factorisations of the Jacobian in the accepted try"),
+    "rejected_tries": ("1", "larger steps at which Newton's method failed before"),
+    "newton_update": ("1", "last update of Newton's method, relative to the scales"),
+    "cells_below_floor": ("1", "elements with ||V|| below the floor"),
+    "nodes_without_pressure": ("1", "nodes with p <= 0 that are not held there"),
+    "backward_wall_nodes": ("1", "nodes of the wall that slide away from the apex"),
+    "mass_budget": ("1", "what the mass balances miss together, relative to the scales"),
+    "momentum_budget": ("1", "what the momentum balances miss together, relative to the scales"),
 }
+
+
+RESIDUALS = {"u": "momentum_residual_x", "v": "momentum_residual_y"}
+RESIDUAL = "residual_"  # and the field that a balance law is for
+
+
+def meaning(name: str) -> tuple[str, str]:
+    """Return unit and meaning of a variable."""
+    if name.startswith(RESIDUAL):
+        return "SI", f"steady balance law of {name.removeprefix(RESIDUAL)}, of the base state"
+    return VARIABLES[name]
 
 
 @cache  # reading a package's metadata takes 3 ms, as long as a map of 2e5 samples
@@ -69,8 +109,7 @@ def dataset(variables: dict[str, tuple], coordinates: dict[str, Any], **attribut
     """Return a Dataset whose variables carry unit and meaning; attributes that are not text are stored as JSON."""
     ds = xr.Dataset(variables, coords=coordinates)
     for name in ds.variables:
-        unit, meaning = VARIABLES[str(name)]
-        ds[name].attrs = {"units": unit, "long_name": meaning}
+        ds[name].attrs = dict(zip(("units", "long_name"), meaning(str(name)), strict=True))
     return described(ds, **attributes, versions=versions())
 
 
@@ -89,8 +128,7 @@ def of_model(model: Model, parameters: dict, point: dict, base: Base, matrix: st
         shape = np.broadcast_shapes(*(np.shape(v) for v in point.values())) if dims else ()
         return dims, np.broadcast_to(np.asarray(value, dtype=float), shape).copy()
 
-    letters, imbalance = base.letters(), base.imbalance()
-    found = {"momentum_residual_x": imbalance[0], "momentum_residual_y": imbalance[1], "mass_residual": imbalance[2]}
+    letters, found = base.letters(), residuals(model, base)
     if {"mu", "N", "A_xx", "A_yy"} <= letters.keys():
         found |= {
             "viscosity": letters["mu"],
@@ -112,6 +150,21 @@ def of_model(model: Model, parameters: dict, point: dict, base: Base, matrix: st
     )
 
 
+def residuals(model: Model, base: Base) -> dict[str, Any]:
+    """Return by how much the base state misses each balance law, by the law's name.
+
+    The first two are those of momentum where the first field is a velocity (u, v); the third is that of mass where the
+    only other field is a pressure. Any other law has the name of the component of the fields that stands in its row.
+    """
+    components = [c for f in model.fields for c in (f if isinstance(f, tuple) else (f,))]
+    names = {c: f"{RESIDUAL}{c}" for c in components}
+    if model.fields[0] == ("u", "v"):
+        names |= RESIDUALS
+    if model.fields == (("u", "v"), "p"):
+        names["p"] = "mass_residual"
+    return dict(zip(names.values(), base.imbalance(), strict=True))
+
+
 def save(ds: xr.Dataset, path: str | Path) -> Path:
     """Write a Dataset as netCDF (version 3, by SciPy), whole or not at all, and return the path."""
     path = Path(path)
@@ -123,6 +176,16 @@ def open_results(path: str | Path) -> xr.Dataset:
     """Return a saved Dataset, read into memory."""
     with xr.open_dataset(path, engine="scipy", decode_times=False) as ds:
         return ds.load()
+
+
+def registered(ds: xr.Dataset) -> tuple[str, str]:
+    """Return the closure's and the flow's names of a result, or raise `SceneError` where they are not registered.
+
+    A result may come from anywhere: what it names is never looked for in files.
+    """
+    for registry in (CLOSURES, FLOWS):
+        registry.place(ds.attrs[registry.kind])
+    return ds.attrs["closure"], ds.attrs["flow"]
 
 
 def assumptions(ds: xr.Dataset) -> dict[str, str]:

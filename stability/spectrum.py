@@ -164,14 +164,20 @@ def leading_first(one: Any, other: Any, xp: Any = np) -> tuple[Any, Any]:
     return xp.where(first, one, other), xp.where(first, other, one)
 
 
-def pencil_eigenvalues(E: Any, L: Any) -> Any:
-    """Return the finite generalised eigenvalues of ``lambda E a = L a`` by QZ: the independent numeric referee.
+def pencil_eigenvalues(E: Any, L: Any, modes: int | None = None) -> Any:
+    """Return the finite generalised eigenvalues of ``lambda E a = L a`` by QZ, by decreasing real part.
 
-    Its error is relative to ||L||, so it checks the moderate cases and fails at the extremes.
+    ``modes`` says how many there are; without it, those count whose reciprocal is not zero to rounding. The error is
+    relative to ||L||: it checks the moderate cases and fails at the extremes.
     """
     from scipy.linalg import eigvals  # not needed by anything that runs often
 
     alpha, beta = eigvals(L, E, homogeneous_eigvals=True)
-    finite = abs(beta) > 1e-12 * abs(alpha).max() / max(abs(L).max(), 1e-300)
-    found = alpha[finite] / beta[finite]
+    if modes is None:
+        finite = abs(beta) > 1e-12 * abs(alpha).max() / max(abs(L).max(), 1e-300)
+    else:
+        size = np.hypot(abs(alpha), abs(beta))
+        finite = np.argsort(-abs(beta) / np.where(size == 0, 1, size))[:modes]
+    with np.errstate(all="ignore"):
+        found = alpha[finite] / beta[finite]
     return found[np.argsort(-found.real)]

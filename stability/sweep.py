@@ -57,7 +57,7 @@ class Grid:
     @property
     def hoisted(self) -> bool:
         """Whether tensors pay: one position needs its forms anyway, for the samples left open, at the same cost."""
-        return self.positions > 1 and self.matrix == "full"
+        return self.positions > 1 and self.matrix == "full" and self.base.model.closed
 
     def form(self, rows: np.ndarray) -> Form:
         """Return the forms of some rows, every coefficient an array."""
@@ -92,7 +92,7 @@ def parts(size: int, longest: int) -> list[slice]:
 def leading(form: Form, wavenumber: Any) -> Any:
     """Return the eigenvalue of largest real part."""
     found = form.eigenvalues(wavenumber)
-    return found[0] if len(found) == 1 else spectrum.leading_first(*found)[0]
+    return spectrum.leading_first(*found)[0] if len(found) == 2 else found[0]
 
 
 class Worker:
@@ -147,6 +147,8 @@ class Worker:
         n = grid.wave_angle.size
         start = positions.start * n + directions.start
         stop = (positions.stop - 1) * n + directions.stop
+        if not grid.base.model.closed:
+            return self.solve(slice(start, stop), columns)
         t, form, first = self.table(positions, directions, columns)
         for block in cuts(stop - start, max(1, fast.BLOCK // (columns.stop - columns.start))):
             rows = slice(start + block.start, start + block.stop)
@@ -165,6 +167,17 @@ class Worker:
                     self.flush(form, first)
         if form:
             self.flush(form, first)
+
+    def solve(self, rows: slice, columns: slice) -> None:
+        """Evaluate rows of a closure without closed forms, by its pencil."""
+        for block in cuts(rows.stop - rows.start, max(1, PENDING // (columns.stop - columns.start))):
+            some = slice(rows.start + block.start, rows.start + block.stop)
+            growth, frequency = self.sink.place(some, columns, self.new)
+            found = leading(self.grid.form(np.arange(some.start, some.stop)).column(), self.grid.wavenumber[columns])
+            growth[...] = found.real
+            if frequency is not None:
+                frequency[...] = found.imag
+            self.sink.take(some, columns, growth, None)
 
     def flush(self, form: Form | None = None, start: int = 0) -> None:
         """Evaluate what was left open; ``form`` holds the rows from ``start`` on, if it is known."""

@@ -17,13 +17,19 @@ from sympy import Expr, ImmutableMatrix, Integer, Matrix, Rational, expand, eye,
 from sympy import factor as factored
 
 from stability.closures.base import Closure
+from stability.errors import SceneError
 from stability.flows.base import Flow
-from stability.linearise import letter_gradients, letters, pencil, state_letters
+from stability.linearise import Pencil, letter_gradients, letters, pencil, state_letters
+from stability.structure import frame_indifferent, galilean
 from stability.symbols import gradient
 
 MATRICES = ("full", "truncated", "leading")  # D, D', M
 WAVE = (1, 0)  # the direction of the wave in its own frame
 Series = dict[int, Expr]  # {n: coefficient of s^n}, s = i|xi|
+
+
+class NoClosedFormError(ValueError):
+    """A closure whose eigenvalues are those of its pencil and of nothing shorter."""
 
 
 @dataclass(frozen=True)
@@ -58,14 +64,32 @@ def uniform(closure: Closure, expression: Expr) -> Expr:
     return expression.subs(dict.fromkeys(gone, 0))
 
 
+def truncated(closure: Closure) -> Pencil:
+    """Return the pencil whose reduction is D' (P7): without inertia and gradients of the base state."""
+    P = pencil(closure)
+
+    def change(m: ImmutableMatrix) -> ImmutableMatrix:
+        return m.applyfunc(lambda e: uniform(closure, e))
+
+    return Pencil(P.E, tuple(tuple(map(change, row)) for row in P.L2), tuple(map(change, P.L1)), change(P.L0))
+
+
 def tangent(closure: Closure, xi: tuple, matrix: str = "full") -> ImmutableMatrix:
     """Return D (L3.1, P3), D' (P7) or M (P4) for the wavevector ``xi``, in the closure's letters.
 
-    Nothing is expanded: the entries stay as short as the reduction makes them.
+    Nothing is expanded: the entries stay as short as the reduction makes them. Without a constraint D is L itself.
     """
+    constraints = closure.evolves.count(0)
+    if constraints > 1 or (matrix != "full" and (constraints, len(closure.evolves)) != (1, 3)):
+        raise SceneError(
+            f"closure {closure.name} has no matrix of that kind: D is derived for one constraint or none, "
+            "D' and M for two velocities and one constraint; its pencil is that of stability.linearise"
+        )
     L = pencil(closure).L(xi)
     if matrix != "full":
         L = L.applyfunc(lambda e: uniform(closure, e))
+    if not constraints:
+        return L
     C, B, row, corner = blocks(closure, L)
     if corner.is_zero_matrix:
         return ImmutableMatrix((eye(C.rows) - B * row / (row * B)[0]) * C)  # (L3.1)
@@ -109,9 +133,9 @@ def entry(series: dict[int, Matrix], i: int, j: int) -> Series:
 def frame_series(closure: Closure, matrix: str) -> dict[int, Matrix]:
     """Return the series of L for a wave along x in its own frame, the Doppler shift -i u.xi left out."""
     series = pencil(closure).series(WAVE)
-    doppler = Matrix(series[1]).diff(closure.q[0])
-    if doppler != -pencil(closure).E:
-        raise ValueError(
+    hidden = any(set(closure.q[:2]) & definition.free_symbols for definition in letters(closure).values())
+    if hidden or not galilean(closure):
+        raise NoClosedFormError(
             f"closure {closure.name} is not Galilean invariant: -i u.xi does not merely shift the frequency"
         )
     rest = dict.fromkeys(closure.q[:2], 0)
@@ -123,7 +147,16 @@ def frame_series(closure: Closure, matrix: str) -> dict[int, Matrix]:
 
 @cache
 def reduced_form(closure: Closure, matrix: str = "full") -> Pair | Single:
-    """Return what the eigenvalues of D, D' or M need, in powers of s = i|xi|."""
+    """Return what the eigenvalues of D, D' or M need, in powers of s = i|xi|, or raise `NoClosedFormError`."""
+    if closure.evolves != (1, 1, 0) or not isinstance(closure.fields[0], tuple):
+        raise NoClosedFormError(f"closure {closure.name}: closed forms exist for two velocities and one constraint")
+    C, B, row, corner = block_series(closure, frame_series(closure, matrix))
+    if set(row) != {1} or row[1][1] != 0 or set(B) - {0, 1} or corner.keys() - {2}:
+        raise NoClosedFormError(
+            f"closure {closure.name}: closed forms exist for div u = 0 and for div u = the Laplacian of the unknown"
+        )
+    if not frame_indifferent(closure):
+        raise NoClosedFormError(f"closure {closure.name} prefers a direction: its waves have no frame of their own")
 
     def reduced(expression: Expr) -> Expr:
         numerator, denominator = fraction(together(expression))
@@ -131,9 +164,6 @@ def reduced_form(closure: Closure, matrix: str = "full") -> Pair | Single:
             numerator = rem(expand(numerator), vanishing, letter)
         return factored(numerator / denominator)
 
-    C, B, row, corner = block_series(closure, frame_series(closure, matrix))
-    if sum(closure.evolves) != 2 or len(closure.evolves) != 3 or set(row) != {1} or row[1][1] != 0:
-        raise ValueError(f"closure {closure.name}: closed forms exist for two velocities and one constraint")
     if not corner:
         return single(C, B, reduced)
     return pair(eliminated(closure, frame_series(closure, matrix), matrix), reduced)

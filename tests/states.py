@@ -6,6 +6,7 @@ from mpmath import mpf
 from stability.arithmetic import NUMPY, multiprecision
 from stability.model import Base, Model
 
+PAPER = ("perturbed", "rigid_plastic")  # the paper's closures, whose fields a random jet has
 COMPONENTS = ("u", "v", "p")
 SUFFIXES = ("", "_x", "_y", "_xx", "_xy", "_yy")
 

@@ -1,5 +1,7 @@
 """The public questions against 40-digit references, by two independent routes each."""
 
+from types import ModuleType
+
 import numpy as np
 import pytest
 from mpmath import mpf
@@ -124,3 +126,9 @@ def test_public_names_exist():
     assert {"CLOSURES", "FLOWS", "eigenvalues", "tangent_matrix", "neutral_curve", "load_scene", "run"} <= set(dir(st))
     with pytest.raises(AttributeError, match="no attribute 'eigenvalue'"):
         st.eigenvalue  # noqa: B018
+
+
+def test_every_public_name_is_what_it_says_however_often_it_is_asked_for():
+    # A subpackage of the same name would take its place once it is imported.
+    found = [[getattr(st, name) for name in st.__all__] for _ in range(2)]
+    assert found[0] == found[1] and not any(isinstance(each, ModuleType) for each in found[0])

@@ -4,27 +4,30 @@ import multiprocessing
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from mpmath import mpf
+from sympy import eye
 
 from stability import codegen
 from stability.arithmetic import multiprecision
 from stability.closures import CLOSURES
-from stability.closures.drucker_prager import PERTURBED
+from stability.closures.plane_flow import momentum_and_mass, velocity
+from stability.errors import SceneError
 from stability.flows import FLOWS
 from stability.model import Model
-from tests.states import base_of, random_jet
+from tests.states import PAPER, base_of, random_jet
 
 
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
     monkeypatch.setenv("STABILITY_CACHE", str(tmp_path))
-    codegen.load.cache_clear()
+    codegen.namespace.cache_clear()
     yield tmp_path
-    codegen.load.cache_clear()
+    codegen.namespace.cache_clear()
 
 
 def only_file(folder):
@@ -32,7 +35,7 @@ def only_file(folder):
     return path
 
 
-@pytest.mark.parametrize("name", CLOSURES)
+@pytest.mark.parametrize("name", PAPER)
 def test_numpy_and_mpmath_run_the_same_expressions(name):
     rng = np.random.default_rng(5)
     for _ in range(20):
@@ -48,7 +51,7 @@ def test_numpy_and_mpmath_run_the_same_expressions(name):
 
 def test_a_second_load_reads_the_cache(cache, monkeypatch):
     codegen.load(CLOSURES, "perturbed")
-    codegen.load.cache_clear()
+    codegen.namespace.cache_clear()
     monkeypatch.setattr(codegen, "generate", lambda entry: pytest.fail("derived again in spite of the cache"))
     assert codegen.load(CLOSURES, "perturbed")["NAME"] == "perturbed"
 
@@ -67,7 +70,7 @@ def test_a_damaged_cache_file_is_rebuilt(cache, damage):
     }[damage]
     assert bad != good
     path.write_bytes(bad)
-    codegen.load.cache_clear()
+    codegen.namespace.cache_clear()
     assert codegen.load(FLOWS, "uniform_strain")["NAME"] == "uniform_strain"
     assert only_file(cache).read_bytes() == good
 
@@ -113,19 +116,55 @@ def test_two_processes_may_race_for_the_cache(cache):
 def test_a_cache_that_cannot_be_written_is_no_obstacle(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("STABILITY_CACHE", str(tmp_path / "file" / "folder"))
-    codegen.load.cache_clear()
+    codegen.namespace.cache_clear()
     assert codegen.load(FLOWS, "uniform_strain")["NAME"] == "uniform_strain"
-    codegen.load.cache_clear()
+    codegen.namespace.cache_clear()
 
 
-def test_a_closure_that_is_not_registered_is_compiled_in_memory(cache):
-    assert Model(PERTURBED, "uniform_strain").modes == 2
-    assert not any("closure" in p.name for p in cache.iterdir())
+def own(**changes):
+    return replace(CLOSURES["rigid_plastic"], name="own", **changes)
+
+
+def test_equal_objects_are_derived_once_and_other_ones_again(cache, monkeypatch):
+    assert Model(own(), "uniform_strain").modes == 1
+    codegen.namespace.cache_clear()
+    with monkeypatch.context() as patched:
+        patched.setattr(codegen, "generate", lambda *_: pytest.fail("derived again in spite of the cache"))
+        assert Model(own(), "uniform_strain").modes == 1
+        assert codegen.load(CLOSURES, own())["NAME"] == "own"
+    twice = own(flux=2 * CLOSURES["rigid_plastic"].flux)
+    assert codegen.signature(twice) != codegen.signature(own()) == codegen.signature(own())
+    assert codegen.signature(own(title="another")) != codegen.signature(own()), "titles stand in the module too"
+
+
+def test_the_name_of_an_object_names_no_other_file(cache):
+    codegen.load(CLOSURES, replace(own(), name="../of my/own"), codegen.RECORDS)
+    assert only_file(cache).name.startswith("records_closure____of_my_own_")
+
+
+def test_an_object_that_cannot_be_derived_says_why_in_one_sentence(cache):
+    weightless = own(**momentum_and_mass(0 * eye(2), velocity))
+    with pytest.raises(SceneError, match=r"^own cannot be derived: closure own: its balance laws do not determine"):
+        codegen.load(CLOSURES, weightless)
+
+
+@pytest.mark.parametrize("registry", [CLOSURES, FLOWS])
+def test_records_are_those_of_the_derived_module_and_take_milliseconds(registry, cache, monkeypatch):
+    name = "perturbed" if registry is CLOSURES else "uniform_strain"
+    whole = codegen.load(registry, name)
+    monkeypatch.setattr("stability.emit.source", lambda entry: pytest.fail("derived"))
+    for entry in registry:
+        records = codegen.load(registry, entry, codegen.RECORDS)
+        assert records["NAME"] == entry and "build" not in records
+    records = codegen.load(registry, name, codegen.RECORDS)
+    names = [n for n in records if n.isupper()]
+    assert {"TITLE", "SOURCE", "PARAMETERS", "FIELDS"} <= set(names)
+    assert {n: records[n] for n in names} == {n: whole[n] for n in names}
 
 
 def test_deriving_both_closures_on_the_hopper_flow_takes_seconds(cache):
     # Stated as under 5 s of a quiet machine; a slower or busier one gets four times that before this fails.
     start = time.process_time()
-    for name in CLOSURES:
+    for name in PAPER:
         Model(name, "radial_hopper")._functions  # noqa: B018
     assert time.process_time() - start < 20

@@ -126,4 +126,4 @@ def test_w_equal_to_one_is_refused():
 @pytest.mark.parametrize("name", FLOWS)
 def test_every_flow_gives_every_field_and_its_body_force(name):
     flow = FLOWS[name]
-    assert [str(f) for f in flow.fields] == ["u", "v", "p"] and Matrix(flow.body_force).shape == (2, 1)
+    assert [str(f) for f in flow.fields][:3] == ["u", "v", "p"] and Matrix(flow.body_force).shape == (2, 1)

@@ -7,15 +7,14 @@ from hypothesis import strategies as some
 from numpy.testing import assert_allclose
 
 from stability.arithmetic import NUMPY
-from stability.closures import CLOSURES
 from stability.errors import SceneError
 from stability.model import Base, Model, rotated
-from tests.states import base_of, random_jet
+from tests.states import PAPER, base_of, random_jet
 
 seeds = some.integers(0, 2**32 - 1)
 angles = some.floats(-360, 360)
 wavenumbers = some.floats(-2, 5).map(lambda e: 10.0**e)
-names = some.sampled_from(sorted(CLOSURES))
+names = some.sampled_from(PAPER)
 quick = settings(max_examples=60, deadline=None, derandomize=True)
 
 

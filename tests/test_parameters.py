@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from stability.errors import SceneError
@@ -37,3 +38,13 @@ def test_a_word_with_two_records_is_refused():
     other = Parameter("epsilon", "epsilon", "m", 0, 1, "something else", "nowhere")
     with pytest.raises(SceneError, match="epsilon is declared twice"):
         merged([EPSILON], [other])
+
+
+@pytest.mark.parametrize("ends", [(None, 1), ("0", "1"), (1, 1), (2, 1), (float("nan"), 1)])
+def test_a_parameter_without_a_range_is_refused(ends):
+    with pytest.raises(ValueError, match="^parameter word has no range: low and high must be numbers and low < high"):
+        Parameter("word", "w", "1", *ends, "meaning", "source")
+
+
+def test_a_range_of_numpy_numbers_is_one_of_plain_numbers():
+    assert repr(Parameter("word", "w", "1", np.float64(0), np.float64(2), "a", "b")).count("low=0.0, high=2.0") == 1

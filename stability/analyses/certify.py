@@ -1,6 +1,7 @@
 """Certified signs of a stored growth map: all of its samples, or some of them."""
 
 import json
+from typing import Any
 
 import numpy as np
 
@@ -9,14 +10,17 @@ from stability.certified import Certifier, Tally, arithmetic_note
 from stability.errors import SceneError
 
 
-def certify(ds: "results.xr.Dataset", samples: int | None = None, seed: int = 0) -> "results.xr.Dataset":
+def certify(
+    ds: "results.xr.Dataset", samples: int | None = None, seed: int = 0, closure: Any = None, flow: Any = None
+) -> "results.xr.Dataset":
     """Return the Dataset with the certified ``sign`` of every growth rate, and how each was decided.
 
     Parameters
     ----------
-    ds : result of `growth_map`, of registered closure and flow
+    ds : result of `growth_map`
     samples : None for all, else how many to draw at random; the others keep the sign that they have
     seed : of the draw
+    closure, flow : those of the result, if they are not registered
 
     Returns
     -------
@@ -39,6 +43,9 @@ def certify(ds: "results.xr.Dataset", samples: int | None = None, seed: int = 0)
     if samples is not None:
         draw = np.random.default_rng(seed).choice(total, samples, replace=False)
         chosen = np.isin(np.arange(total), draw).reshape(growth.shape)
+    if closure is None or flow is None:
+        named = results.registered(ds)
+        closure, flow = closure or named[0], flow or named[1]
     sign, tally = np.sign(growth).astype(np.int8), Tally()
     ties: list[dict] = []  # the point of every tie
     wavenumber, wave_angle = ds.wavenumber.values, ds.wave_angle.values
@@ -46,7 +53,7 @@ def certify(ds: "results.xr.Dataset", samples: int | None = None, seed: int = 0)
     coordinates = [c for c in ds.coords if c not in ("wavenumber", "wave_angle")]
     for index in np.ndindex(growth.shape[:-2]):
         point = {c: float(ds[c].values[index]) for c in coordinates}
-        one = Certifier(ds.attrs["closure"], ds.attrs["flow"], parameters, point, ds.attrs["matrix"])
+        one = Certifier(closure, flow, parameters, point, ds.attrs["matrix"])
         sign[index] = np.where(chosen[index], one.signs(wavenumber, wave_angle, tally, chosen[index]), sign[index])
         ties += [point] * (len(tally.undecided) - len(ties))
     told = zip(ties, tally.undecided, tally.enclosures, strict=True)

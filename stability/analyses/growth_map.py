@@ -82,7 +82,7 @@ def growth_map(
     point = {word: np.asarray(value, float) if np.ndim(value) else value for word, value in point.items()}
     base = model.base(parameters, point)
     variables, coordinates, attributes = results.of_model(model, parameters, point, base, matrix)
-    place, residual = variables["mass_residual"]
+    place, residual = next(iter(variables.values()))  # as all of them
 
     grid = sweep.Grid(base, residual.size, wave_angle, wavenumber, matrix, accuracy == "draft")
     shape, dtype = (grid.rows, wavenumber.size), np.float32 if grid.draft else float

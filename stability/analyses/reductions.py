@@ -89,7 +89,7 @@ def largest_growth(
     point = {word: np.asarray(value, float) if np.ndim(value) else value for word, value in point.items()}
     base = model.base(parameters, point)
     variables, coordinates, attributes = results.of_model(model, parameters, point, base, matrix)
-    dims, residual = variables["mass_residual"]
+    dims, residual = next(iter(variables.values()))  # as all of them
     n, m = wave_angle.size, wavenumber.size
     grid = sweep.Grid(base, residual.size, wave_angle, wavenumber, matrix)
     found, *others = sweep.run(grid, lambda: Largest(residual.size, n, m), threads, progress)

@@ -8,5 +8,7 @@ FLOWS = Registry(
         "radial_hopper": "stability.flows.radial_hopper:RADIAL_HOPPER",
         "radial_hopper_compatible": "stability.flows.radial_hopper:RADIAL_HOPPER_COMPATIBLE",
         "uniform_strain": "stability.flows.uniform_strain:UNIFORM_STRAIN",
+        "uniform_fraction": "stability.flows.uniform_fraction:UNIFORM_FRACTION",
+        "uniform_fluidity": "stability.flows.uniform_fluidity:UNIFORM_FLUIDITY",
     },
 )

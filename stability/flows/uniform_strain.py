@@ -16,11 +16,17 @@ from stability.symbols import p, symbol, u, v, x, y
 delta, strain, pressure = symbol("delta"), symbol("strain_rate"), symbol("pressure")
 s = sqrt(2 - delta**2)  # A = diag(delta + s, delta - s)/2 has trace delta and A:A = 1
 
+# What further closures ask for and uniform strain fixes: no Laplacian of the velocity, no spin, and the director of the
+# major principal stress along y.
+AT_REST = {
+    symbol(name): Integer(value) for name, value in {"lap_u": 0, "lap_v": 0, "spin": 0, "n1": 0, "n2": 1}.items()
+}
+
 UNIFORM_STRAIN = Flow(
     name="uniform_strain",
     title="Uniform plane strain",
     source="paper, (P4.5) to (P6)",
-    fields={u: strain * (delta + s) / 2 * x, v: strain * (delta - s) / 2 * y, p: pressure},
+    fields={u: strain * (delta + s) / 2 * x, v: strain * (delta - s) / 2 * y, p: pressure} | AT_REST,
     body_force=(Integer(0), Integer(0)),
     point=(),
     parameters=(
