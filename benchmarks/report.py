@@ -78,7 +78,7 @@ def machine() -> list[tuple[str, str]]:
     config = np.show_config(mode="dicts")
     simd = config.get("SIMD Extensions", {})
     blas = config["Build Dependencies"]["blas"]
-    names = ("sympy", "mpmath", "python-flint", "numba", "matplotlib")
+    names = ("scipy", "sympy", "mpmath", "python-flint", "numba", "pyamg", "matplotlib")
     return [
         ("processor", f"{processor()}, {os.cpu_count()} cores"),
         ("SIMD that NumPy found", " ".join(simd.get("found", [])) or "baseline"),

@@ -3,13 +3,18 @@
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TextIO
-
-Report = Callable[[int, int], None]
+from typing import Protocol, TextIO
 
 HEARTBEAT = 5.0  # seconds between two lines; work that is done sooner leaves none
+
+
+class Report(Protocol):
+    """How work says how far it is."""
+
+    def __call__(self, done: float, total: float, note: str = "", start: float = 0) -> None:
+        """Take the work done, in any unit; ``start`` is what was done before this run, ``note`` says it in words."""
 
 
 @contextmanager
@@ -28,24 +33,30 @@ def _bar(label: str, stream: TextIO, every: float) -> Iterator[Report]:
     from rich.console import Console  # only a terminal needs it
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    columns = (BarColumn(), TimeElapsedColumn(), TextColumn("left:"), TimeRemainingColumn())
+    said = TextColumn("{task.fields[note]}", markup=False)
+    columns = (BarColumn(), said, TimeElapsedColumn(), TextColumn("left:"), TimeRemainingColumn())
     bar = Progress(TextColumn(label, markup=False), *columns, console=Console(file=stream), transient=True)
+
+    def report(done: float, total: float, note: str = "", start: float = 0) -> None:
+        bar.update(task, completed=done, total=total, note=note)
+
     with bar:
-        task = bar.add_task(label, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+        task = bar.add_task(label, total=None, note="")
+        yield report
 
 
 @contextmanager
 def _heartbeat(label: str, stream: TextIO, every: float) -> Iterator[Report]:
-    start, finished, last = time.monotonic(), threading.Event(), [0, 0]
+    begin, finished = time.monotonic(), threading.Event()
+    last: list[tuple[float, float, str, float]] = [(0, 0, "", 0)]
 
-    def report(done: int, total: int) -> None:
-        last[:] = done, total
+    def report(done: float, total: float, note: str = "", start: float = 0) -> None:
+        last[0] = done, total, note, start
 
     def beat() -> None:
         # A thread, because the work itself may be one long call that reports nothing.
         while not finished.wait(every):
-            print(line(label, time.monotonic() - start, *last), file=stream, flush=True)
+            print(line(label, time.monotonic() - begin, *last[0]), file=stream, flush=True)
 
     thread = threading.Thread(target=beat, name="heartbeat", daemon=True)
     thread.start()
@@ -56,8 +67,10 @@ def _heartbeat(label: str, stream: TextIO, every: float) -> Iterator[Report]:
         thread.join()
 
 
-def line(label: str, elapsed: float, done: int, total: int) -> str:
-    """Return a heartbeat: how far, how long, how much longer at this rate."""
-    if not done:
-        return f"{label}: running for {elapsed:.0f} s"
-    return f"{label}: {done / total:.0%} after {elapsed:.0f} s, about {elapsed * (total / done - 1):.0f} s left"
+def line(label: str, elapsed: float, done: float, total: float, note: str = "", start: float = 0) -> str:
+    """Return a heartbeat: how far, how long, how much longer at this run's rate."""
+    said = f" ({note})" if note else ""
+    if not done > start:
+        return f"{label}: running for {elapsed:.0f} s{said}"
+    left = elapsed * (total - done) / (done - start)
+    return f"{label}: {done / total:.0%}{said} after {elapsed:.0f} s, about {left:.0f} s left"

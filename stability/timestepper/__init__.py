@@ -1,0 +1,1 @@
+"""Time-dependent flow in the hopper: mesh, equations, implicit steps."""
