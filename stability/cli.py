@@ -1,9 +1,10 @@
 """The command ``stability``. Only click is imported here: each command imports what it needs when it runs."""
 
 import json
+import logging
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -11,9 +12,10 @@ from typing import Any
 import click
 
 from stability import CLOSURES, FLOWS, __version__, manual
-from stability.errors import SceneError, StabilityError
+from stability.errors import CheckpointError, SceneError, StabilityError
 
 BAD_INPUT, NUMERICAL_FAILURE, INTERRUPTED = 2, 3, 130
+CHECKPOINT = ".checkpoint"  # what follows the name of a result that is being made
 NARROW = 100  # columns of formulas where there is no terminal to ask
 
 
@@ -27,9 +29,9 @@ class Commands(click.Group):
         except StabilityError as error:
             for problem in getattr(error, "problems", ()) or (str(error),):
                 complain(problem)
-            ctx.exit(BAD_INPUT if isinstance(error, SceneError) else NUMERICAL_FAILURE)
-        except KeyboardInterrupt:
-            complain("interrupted: nothing was written")
+            ctx.exit(BAD_INPUT if isinstance(error, SceneError | CheckpointError) else NUMERICAL_FAILURE)
+        except KeyboardInterrupt as stop:
+            complain(str(stop) or "interrupted: nothing was written")
             ctx.exit(INTERRUPTED)
 
 
@@ -45,13 +47,26 @@ def warn(sentence: str) -> None:
     click.echo(click.style("warning: ", fg="yellow", bold=True) + sentence, err=True, color=plain)
 
 
+class Told(logging.Handler):
+    """Prints what the package reports on its way on standard error: a file that is executed, above all."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a report."""
+        click.echo(f"stability: {record.getMessage()}", err=True)
+
+
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 
 
 @click.group(cls=Commands, help=manual.ABOUT, context_settings=SETTINGS)
 @click.version_option(__version__, prog_name="stability", message="%(prog)s %(version)s")
-def main() -> None:
+@click.pass_context
+def main(context: click.Context) -> None:
     """Linear stability and well-posedness of granular flow."""
+    log, told = logging.getLogger("stability"), Told(logging.INFO)
+    log.addHandler(told)
+    log.setLevel(logging.INFO)
+    context.call_on_close(lambda: log.removeHandler(told))
 
 
 @main.command(help=manual.RUN, short_help="Compute what a scene asks for, into a netCDF file.")
@@ -64,22 +79,98 @@ def run(scene: Path, output: Path | None, quiet: bool) -> None:
 
     output = writable(output or Path(f"{scene.stem}.nc"), scene)
     checked = load_scene(scene)  # a bad scene is told before the libraries of results are loaded
-    from stability import results, runner
+    from stability import runner
 
+    if checked.request.kind == "march":
+        kept = output.with_name(f"{output.name}{CHECKPOINT}")
+        finish(lambda: runner.run(checked, progress=not quiet, checkpoint=kept), output, quiet, kept)
+    else:
+        finish(lambda: runner.run(checked, progress=not quiet), output, quiet)
+
+
+@main.command(help=manual.RESUME, short_help="Go on with a march that was stopped.")
+@click.argument("checkpoint", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="File to write.  [default: as the run's own]")
+@click.option("--scene", type=click.Path(path_type=Path), help="Go on by this scene, whose steps or floor differ.")
+@click.option("-q", "--quiet", is_flag=True, help="No progress and no summary.")
+def resume(checkpoint: Path, output: Path | None, scene: Path | None, quiet: bool) -> None:
+    """Go on from CHECKPOINT, write the result as netCDF, and print a summary."""
+    own = checkpoint.with_name(checkpoint.name.removesuffix(CHECKPOINT))
+    output = writable(output or (own if own != checkpoint else checkpoint.with_suffix(".nc")), checkpoint)
+    from stability.resuming import resume as resumed
+
+    finish(lambda: resumed(checkpoint, not quiet, scene), output, quiet, checkpoint)
+
+
+@main.command(help=manual.EXPORT, short_help="Write a march's fields, or a field map, for ParaView.")
+@click.argument("result", type=click.Path(path_type=Path))
+@click.option("--vtk", "folder", type=click.Path(path_type=Path), required=True, help="Folder for the files.")
+@click.option("--scene", type=click.Path(path_type=Path), help="Of a field map, if RESULT does not lie beside it.")
+def export(result: Path, folder: Path, scene: Path | None) -> None:
+    """Write the fields of RESULT into a folder."""
+    from stability import results
+
+    try:
+        ds = results.open_results(result)
+    except (OSError, TypeError, ValueError) as error:
+        raise SceneError(f"{result} cannot be read as a result: {getattr(error, 'strerror', None) or error}") from None
+    kind = ds.attrs.get("request")
+    if kind not in ("march", "field_map"):
+        raise SceneError(f"{result} is not the result of a march or a field_map: only these have fields to export")
+    try:
+        if kind == "march":
+            from stability.timestepper.paraview import write_paraview
+
+            written = write_paraview(ds, folder, result.stem)
+            more = f" and {ds.sizes['time']} snapshots beside it"
+        else:
+            from stability.field.writing import write_vtk
+
+            field, more = field_of(ds, scene or result), ""
+            folder.mkdir(parents=True, exist_ok=True)
+            written = write_vtk(ds, field, folder / f"{result.stem}{'.vts' if field.structured else '.vtu'}")
+    except OSError as error:
+        raise SceneError(f"--vtk {folder} cannot be written: {error.strerror}") from None
+    click.echo(f"wrote {written}{more}; open it in ParaView")
+
+
+def field_of(ds: Any, beside: Path) -> Any:
+    """Return the field that a field map was made of, from the file that its scene names; runs no other file."""
+    import tomllib
+
+    from stability.estimates import field_in
+    from stability.scene.requests import FieldMap
+
+    return field_in(FieldMap.model_validate(tomllib.loads(ds.attrs["scene_text"])["request"]), beside.parent)
+
+
+def finish(task: Callable[[], Any], output: Path, quiet: bool, kept: Path | None = None) -> None:
+    """Run a task, write its result, print what it says, and remove the checkpoint that is no longer needed."""
+    from stability import results
+    from stability.summary import summary
+
+    if kept and kept.exists() and not quiet:
+        from stability.timestepper import checkpoint
+
+        click.echo(f"going on from {kept}: {checkpoint.told(checkpoint.load(kept))}", err=True)
     start = perf_counter()
-    result = runner.run(checked, progress=not quiet)
+    result = task()
     taken = perf_counter() - start
     for warning in json.loads(result.attrs["plan_warnings"]):
         warn(warning)
     try:
         results.save(result, output)
     except OSError as error:
-        raise SceneError(f"--output {output} cannot be written: {error.strerror}") from None
+        left = f"; the run is kept in {kept}: make room, then stability resume {kept}" if kept else ""
+        raise SceneError(f"--output {output} cannot be written: {error.strerror}{left}") from None
+    if kept:
+        from stability.timestepper import checkpoint
+
+        checkpoint.remove(kept)
     if not quiet:
-        click.echo(runner.summary(result))
-        click.echo(
-            f"  {'cost':<15}{taken:.2g} s; {json.loads(result.attrs['plan'])['predicted_seconds']:.2g} s predicted"
-        )
+        predicted = json.loads(result.attrs["plan"])["predicted_seconds"]
+        click.echo(summary(result))
+        click.echo(f"  {'cost':<15}{taken:.2g} s; {predicted:.2g} s predicted")
         click.echo(f'\nwrote {output}; to open it: import stability; ds = stability.open_results("{output}")')
 
 
@@ -92,14 +183,8 @@ def explain(scene: Path) -> None:
 
     checked = load_scene(scene)
     found = plan(checked)
-    rows = [
-        ("matrix", found.matrix),
-        ("precision", f"{checked.tolerance.digits} digits" if checked.tolerance.digits else found.precision),
-        ("sampling", f"{found.sampling}, {found.samples} samples"),
-        ("error", f"{found.predicted_error:.2g} ({found.error_kind}), of the largest growth rate"),
-        ("cost", f"{found.predicted_seconds:.2g} s"),
-        ("reasons", "\n".join((" " * 17 + reason)[17 * (i == 0) :] for i, reason in enumerate(found.reasons))),
-    ]
+    reasons = "\n".join((" " * 17 + reason)[17 * (i == 0) :] for i, reason in enumerate(found.reasons))
+    rows = [*found.rows(checked.tolerance.digits), ("reasons", reasons)]
     click.echo("\n".join([checked.title, *(f"  {name:<15}{text}" for name, text in rows)]))
     for warning in found.warnings:
         warn(warning)
@@ -123,7 +208,8 @@ def writable(output: Path, scene: Path) -> Path:
 def list_(what: str | None) -> None:
     """List the closures and the flows, with the parameters that a scene must give them.
 
-    Ranges are open: neither end is allowed. Angles are in degrees.
+    Ranges are open: neither end is allowed. Angles are in degrees. One of your own, in a Python file, is named
+    my_file.py:NAME (stability run --help).
     """
     for registry in (CLOSURES, FLOWS):
         if what in (None, f"{registry.kind}s"):
@@ -136,7 +222,7 @@ def listing(registry: Any) -> Iterator[str]:
 
     tables = {}
     for name in registry:
-        module = codegen.load(registry, name)
+        module = codegen.load(registry, name, codegen.RECORDS)
         words = {f"point.{r.word}": r for r in module.get("POINT", ())} | {r.word: r for r in module["PARAMETERS"]}
         tables[name] = module, [(word, r.unit, f"({r.low:g}, {r.high:g})", r) for word, r in words.items()]
     widths = [max(len(row[i]) for _, table in tables.values() for row in table) for i in range(3)]
@@ -151,26 +237,23 @@ def listing(registry: Any) -> Iterator[str]:
         yield ""
 
 
-@main.command(short_help="Print the tangent matrix of a closure.")
+@main.command(help=manual.DERIVE, short_help="Print the tangent matrix of a closure.")
 @click.argument("closure")
 @click.option("--flow", help="Write the base state of this flow out in place of the letters (long).")
 @click.option("--matrix", type=click.Choice(["full", "truncated", "leading"]), default="full", show_default=True)
 @click.option("--format", "style", type=click.Choice(["text", "latex", "python"]), default="text", show_default=True)
 def derive(closure: str, flow: str | None, matrix: str, style: str) -> None:
-    """Derive the tangent matrix of CLOSURE and print it in the paper's letters.
-
-    full is D (L3.1, P3), truncated is D' (P7), leading is M (P4). xi_x and xi_y are the components of the wavevector. A
-    letter with one index more is a derivative: u_y is du/dy, A_xx_y is dA_xx/dy.
-    """
+    """Derive the tangent matrix of CLOSURE and print it in the paper's letters."""
     for registry, name in ((CLOSURES, closure), (FLOWS, flow)):
-        if name is not None:
+        if name is not None and isinstance(registry.resolved(name), str):
             registry.place(name)  # raises for an unknown one before SymPy is imported
     from stability.api import tangent_matrix
 
     found = tangent_matrix(closure, flow, matrix)
     if style == "text":
-        letters = {} if flow else CLOSURES[closure].letters
-        click.echo("\n".join(formulas(found, letters)))
+        from stability.linearise import letters
+
+        click.echo("\n".join(formulas(found, {} if flow else letters(CLOSURES[closure]))))
     elif style == "latex":
         from sympy import latex
 

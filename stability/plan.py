@@ -10,14 +10,21 @@ the requested grid (`probe`): its error is bounded where a bound suffices, else 
 """
 
 import json
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stability import estimates
 from stability.model import Model
 from stability.probe import CONFIRMED, DIGITS, Probe, confirmed, matrix_error, probe, rounding
 from stability.scene import Scene
+
+if TYPE_CHECKING:
+    from stability.estimates import Estimate
+    from stability.timestepper.forecast import Forecast
+    from stability.timestepper.march import March
 
 INTERPOLATION = 1e-3  # tolerance of an adaptive map whose scene states none
 
@@ -72,16 +79,50 @@ class Plan:
             return None
         return self.probe.error(np.abs(growth_rate[self.probe.rows, self.probe.columns] - self.probe.truth))
 
+    def rows(self, digits: int | None = None) -> list[tuple[str, str]]:
+        """Return the rows of an explanation."""
+        return [
+            ("matrix", self.matrix),
+            ("precision", f"{digits} digits" if digits else self.precision),
+            ("sampling", f"{self.sampling}, {self.samples} samples"),
+            ("error", f"{self.predicted_error:.2g} ({self.error_kind}), of the largest growth rate"),
+            ("cost", f"{self.predicted_seconds:.2g} s"),
+        ]
+
     def because(self, *reasons: str, **changes: Any) -> "Plan":
         """Return the plan with changes, and with reasons added."""
         return replace(self, reasons=(*self.reasons, *reasons), **changes)
 
 
-def plan(scene: Scene) -> Plan:
-    """Return the cheapest plan whose bounded or measured error meets the tolerance of a scene."""
-    return {"phase_diagram": _phase_diagram, "neutral_curve": _neutral_curve, "growth_map": _growth_map}[
-        scene.request.kind
-    ](scene)
+def plan(scene: Scene) -> "Plan | Forecast | Estimate":
+    """Return the cheapest plan whose bounded or measured error meets the tolerance; of a march, its forecast.
+
+    Of requests without a choice it is an estimate.
+    """
+    return PLANS[scene.request.kind](scene)
+
+
+def marched(scene: Any) -> "March":
+    """Return what a scene asks the time-stepper for."""
+    from stability.timestepper.march import March
+
+    ask, noise = scene.request, scene.request.perturbation
+    more = {"noise": noise.size, "seed": noise.seed} if noise else {}
+    if scene.tolerance.newton is not None:
+        more["newton"] = scene.tolerance.newton
+    return March(
+        closure=scene.closure,
+        flow=scene.flow,
+        parameters=scene.parameters,
+        mesh=ask.mesh.model_dump(),
+        snapshots=ask.snapshots.samples.tolist(),
+        **ask.step.model_dump(),
+        scheme=ask.scheme,
+        floor=ask.floor,
+        solver=ask.solver,
+        every=ask.checkpoint_every,
+        **more,
+    )
 
 
 def _phase_diagram(scene: Any) -> Plan:
@@ -225,3 +266,20 @@ def _sampled(scene: Any, found: Plan) -> Plan:
         sampling="adaptive", samples=few, predicted_seconds=seconds, interpolation=miss,
         predicted_error=found.predicted_error + miss, error_kind="measured",
     )  # fmt: skip
+
+
+def _march(scene: Any) -> "Forecast":
+    from stability.timestepper.forecast import forecast  # and with it SciPy's solvers, which nothing else needs
+
+    return forecast(marched(scene))
+
+
+PLANS: dict[str, Callable[[Any], Any]] = {
+    "phase_diagram": _phase_diagram,
+    "neutral_curve": _neutral_curve,
+    "growth_map": _growth_map,
+    "march": _march,
+    "well_posedness": estimates.well_posedness,
+    "crosscheck": estimates.crosscheck,
+    "field_map": estimates.field_map,
+}

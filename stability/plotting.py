@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
@@ -23,7 +24,7 @@ from xarray import Dataset
 
 from stability.codegen import write_atomically
 from stability.model import Model
-from stability.results import assumptions
+from stability.results import assumptions, registered
 
 Levels = Sequence[float]
 GROWTH = ("#fdebd3", "#fbc48b", "#ee8a3a", "#b94f10", "#6e2405")  # slowest to fastest
@@ -161,6 +162,43 @@ def phase(ds: Dataset, ax: Axes, levels: Levels) -> ContourSet:
     return drawn
 
 
+def hopper_contours(
+    ds: Dataset, ax: Axes, name: str, levels: Levels, colours: str = "viridis", lines: int = 2
+) -> ContourSet:
+    """Draw a field of one snapshot of a march as filled contours in the plane of the hopper, its apex below.
+
+    Parameters
+    ----------
+    ds : one snapshot, with the dimensions r and theta
+    ax : equal scales on both axes, no frame
+    name : of the field
+    levels : its values at which the colour changes
+    colours : name of a colour map
+    lines : every which of the levels is drawn as a line too; 0 for none
+    """
+    r, theta = np.meshgrid(ds.r.values, np.radians(ds.theta.values), indexing="ij")
+    x, y, values = r * np.sin(theta), r * np.cos(theta), ds[name].transpose("r", "theta").values
+    drawn = ax.contourf(x, y, values, levels, cmap=colours, extend="both")
+    if lines:
+        ax.contour(x, y, values, levels[::lines], colors="black", linewidths=0.25, alpha=0.7)
+    edge = np.s_[[*[0] * x.shape[1], *range(len(x)), *[-1] * x.shape[1], *range(len(x))[::-1]]]
+    column = np.s_[[*range(x.shape[1]), *[-1] * len(x), *range(x.shape[1])[::-1], *[0] * len(x)]]
+    ax.plot(x[edge, column], y[edge, column], color="black", lw=0.6)
+    ax.set_aspect("equal")
+    ax.axis("off")
+    return drawn
+
+
+def space_time(ds: Dataset, wave: np.ndarray, ax: Axes, largest: float, colours: str = "RdBu_r") -> QuadMesh:
+    """Draw a wave (time, r) along one ray of a march over time and radius, and return the coloured mesh."""
+    drawn = ax.pcolormesh(
+        ds.time.values, ds.r.values, wave.T, cmap=colours, vmin=-largest, vmax=largest, shading="gouraud",
+        rasterized=True,
+    )  # fmt: skip
+    ax.set(xlim=ds.time.values[[0, -1]], ylim=ds.r.values[[0, -1]], xlabel="time (s)", ylabel="$r$ (m)")
+    return drawn
+
+
 def caption(text: str, *results: Dataset) -> str:
     """Return a caption: what is seen, then each result's parameters, assumptions and base state with its residual."""
     parts = dict.fromkeys([" ".join(text.split()), *(part for ds in results for part in _facts(ds))])  # each one once
@@ -168,7 +206,7 @@ def caption(text: str, *results: Dataset) -> str:
 
 
 def _facts(ds: Dataset) -> Iterator[str]:
-    model = Model(ds.attrs["closure"], ds.attrs["flow"])
+    model = Model(*registered(ds))
     units = {word: record.unit for word, record in (model.parameters | model.point).items()}
     parameters, assumed = json.loads(ds.attrs["parameters"]), assumptions(ds)
 
@@ -179,12 +217,30 @@ def _facts(ds: Dataset) -> Iterator[str]:
         yield f"Parameters: {printed}."
     if assumed:
         yield "Assumed: " + "; ".join(f"{told(w, parameters[w])} ({why})" for w, why in assumed.items()) + "."
+    if ds.attrs.get("request") == "march":
+        yield _marched(ds)
+        return
     if point := ", ".join(told(word, ds[word].item()) for word in model.point if word in ds.coords):
-        x, y, mass = (ds[n].item() for n in ("momentum_residual_x", "momentum_residual_y", "mass_residual"))
-        missed = f"by {np.hypot(x, y):.1g} m/s2 in its momentum and {abs(mass):.1g} 1/s in its mass balance"
-        yield f"Base state at {point}: it misses a steady flow {missed}."
+        x, y = (ds[n].item() for n in ("momentum_residual_x", "momentum_residual_y"))
+        mass = f" and {abs(ds.mass_residual.item()):.1g} 1/s in its mass balance" if "mass_residual" in ds else ""
+        yield f"Base state at {point}: it misses a steady flow by {np.hypot(x, y):.1g} m/s2 in its momentum{mass}."
     if (sign := ds.attrs.get("sign", "")).startswith("certified"):
         yield f"Signs of the growth rate: {sign}."
+
+
+def _marched(ds: Dataset) -> str:
+    """Return what a caption says of a march: mesh, steps, floor, noise, and the cells below the floor."""
+    mesh, steps = json.loads(ds.attrs["mesh"]), json.loads(ds.attrs["steps"])
+    part = "half the wedge (the other half is its mirror image)" if mesh["half"] else "the whole wedge"
+    scheme = {"backward_euler": "backward Euler", "bdf2": "BDF2"}[ds.attrs["scheme"]]
+    below = json.loads(ds.attrs["counted"])["cells_below_floor"]
+    return (
+        f"Run {ds.attrs['title']}: {ds.attrs['elements']} {mesh['kind']} elements over {part}; {scheme}, "
+        f"{ds.sizes['step']} steps of at most {steps['largest']:g} s to t = {ds.time.values[-1]:g} s; random initial "
+        f"velocities up to {float(ds.attrs['noise']):g} sqrt(g r_0), seed {ds.attrs['seed']}; ||V|| in the rheology at "
+        f"least {float(ds.attrs['floor']):g} 1/s: {below['last']} elements are below it at the end, {below['largest']} "
+        f"at most."
+    )
 
 
 def save(figure: Figure, folder: str | Path, name: str, caption: str) -> list[Path]:

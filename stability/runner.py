@@ -1,12 +1,9 @@
 """A scene -> the analysis that it asks for -> a labelled result."""
 
-import json
 from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from stability import progress as show
 from stability import results
@@ -15,17 +12,28 @@ from stability.analyses.certify import certify
 from stability.analyses.growth_map import growth_map
 from stability.analyses.neutral_curve import neutral_curve
 from stability.analyses.phase_diagram import phase_diagram
-from stability.plan import Plan, plan
+from stability.analyses.short_waves import short_waves
+from stability.errors import SceneError
+from stability.estimates import field_in
+from stability.plan import Plan, marched, plan
 from stability.scene import Scene, load_scene
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from stability.estimates import Estimate
+    from stability.timestepper.forecast import Forecast
+
 
 ROUNDING = 1e-9  # relative errors below this are rounding, which a plan calls exact
 
 
-def run(scene: Scene | str | Path, progress: bool = False, executor: Executor | None = None) -> "Dataset":
+def run(
+    scene: Scene | str | Path,
+    progress: bool = False,
+    executor: Executor | None = None,
+    checkpoint: str | Path | None = None,
+) -> "Dataset":
     """Return the result that a scene asks for.
 
     Parameters
@@ -34,36 +42,46 @@ def run(scene: Scene | str | Path, progress: bool = False, executor: Executor | 
     progress : whether to show on standard error how far the work is
     executor : None or a `concurrent.futures.Executor`; accepted so that calls need not change later. Nothing is shared
         out yet: a map of half a million waves takes a fraction of a second in one process
+    checkpoint : None or, of a march, the file that keeps the run: it goes on from there if the file exists. The file
+        stays, for the caller to remove once the result is safe
 
     Returns
     -------
-    Dataset of the analysis (`growth_map`, `adaptive_map`, `neutral_curve`, `phase_diagram`) with the attributes
-    ``title``, ``scene_text`` and ``assumed``, so that a file tells by itself what it is, and ``plan`` (JSON),
-    ``plan_reason``, ``plan_warnings``, ``predicted_error`` and ``true_error``: how it was made and what it misses
+    Dataset of the analysis (`growth_map`, `adaptive_map`, `neutral_curve`, `phase_diagram`, `short_waves`, `march`,
+    `crosscheck`, `field_map`) with attributes ``title``, ``request`` (its kind), ``scene_text`` and ``assumed``, so
+    that a file tells by itself what it is, and ``plan`` (JSON), ``plan_reason``, ``plan_warnings`` and, where something
+    may be approximated, ``predicted_error`` and ``true_error``: how it was made and what it misses
 
     Raises
     ------
     SceneError : the scene, or a file of one, cannot be modelled
+    CheckpointError : the checkpoint is of another scene or version, damaged, or cannot be written
     """
     if not (executor is None or isinstance(executor, Executor)):
         raise TypeError(f"executor must be None or a concurrent.futures.Executor, got {executor!r}")
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
+    kept = {} if checkpoint is None else {"checkpoint": checkpoint}
+    if kept and scene.request.kind != "march":
+        raise SceneError(f"checkpoint = {str(checkpoint)!r}: a {scene.request.kind} keeps none, a march alone does")
     planned = plan(scene)
     analysis = KINDS[scene.request.kind]
     if progress:
         with show.reporting(scene.path.stem) as report:
-            found = analysis(scene, planned, report)
+            found = analysis(scene, planned, report, **kept)
     else:
-        found = analysis(scene, planned, None)
-    found = results.described(found, title=scene.title, scene_text=scene.text, assumed=scene.assumed)
+        found = analysis(scene, planned, None, **kept)
+    about = {"title": scene.title, "request": scene.request.kind, "scene_text": scene.text, "assumed": scene.assumed}
+    found = results.described(found, **about)
     return results.described(found, **_accounted(planned, found))
 
 
-def _accounted(planned: Plan, found: "Dataset") -> dict[str, Any]:
+def _accounted(planned: "Plan | Forecast | Estimate", found: "Dataset") -> dict[str, Any]:
     """Return the attributes that say how a result was made, what it was expected to miss, and what it misses.
 
     No times: equal scenes give equal results. ``true_error`` is that of the growth rates on the plan's probe.
     """
+    if not isinstance(planned, Plan):
+        return {"plan": planned.text, "plan_reason": "\n".join(planned.reasons), "plan_warnings": planned.warnings}
     true = planned.true_error(found.growth_rate.values) if "growth_rate" in found else None
     warnings = list(planned.warnings)
     if true is not None and true > max(planned.predicted_error, ROUNDING):
@@ -85,7 +103,7 @@ def _growth_map(scene: Any, planned: Plan, report: show.Report | None) -> "Datas
         found = adaptive_map(**question, growth=planned.interpolation, digits=scene.tolerance.digits)
     else:
         found = growth_map(**question, accuracy="draft" if planned.precision == "draft" else "standard")
-    return certify(found) if planned.precision == "certified" else found
+    return certify(found, closure=scene.closure, flow=scene.flow) if planned.precision == "certified" else found
 
 
 def _neutral_curve(scene: Any, planned: Plan, report: show.Report | None) -> "Dataset":
@@ -103,11 +121,49 @@ def _phase_diagram(scene: Any, planned: Plan, report: show.Report | None) -> "Da
     return phase_diagram(angle, *grid, progress=report, growth=ask.growth)
 
 
+def _march(
+    scene: Any, planned: "Forecast", report: show.Report | None, checkpoint: str | Path | None = None
+) -> "Dataset":
+    from stability.timestepper.march import march  # and with it SciPy's solvers, which nothing else needs
+
+    return march(marched(scene), checkpoint, scene.text, report)
+
+
+def _well_posedness(scene: Any, planned: "Estimate", report: show.Report | None) -> "Dataset":
+    matrix = "full" if scene.request.matrix == "auto" else scene.request.matrix
+    return short_waves(scene.closure, scene.flow, scene.parameters, scene.request.point, matrix)
+
+
+def _crosscheck(scene: Any, planned: "Estimate", report: show.Report | None) -> "Dataset":
+    from stability.crosscheck.report import SATURATION, crosscheck
+
+    ask = scene.request
+    courses = SATURATION if ask.saturation is None else tuple((c.epsilon, c.cells) for c in ask.saturation)
+    return crosscheck(
+        scene.closure, scene.flow, scene.parameters, ask.point, parts=ask.parts, elements=ask.elements, kind=ask.mesh,
+        duration=ask.duration, dt=ask.step, size=ask.noise, seed=ask.seed, delta=ask.delta, courses=courses,
+        floor=ask.floor, progress=report,
+    )  # fmt: skip
+
+
+def _field_map(scene: Any, planned: "Estimate", report: show.Report | None) -> "Dataset":
+    from stability.field.mapping import field_map
+
+    ask = scene.request
+    asked = {"duration": ask.duration, "cells": ask.cells, "longest": ask.longest, "check": ask.check}
+    field = field_in(ask, scene.path.parent)
+    return field_map(scene.closure, field, scene.parameters, **asked, progress=report)
+
+
 # What a scene may ask for.
-KINDS: dict[str, Callable[[Scene, Plan, show.Report | None], "Dataset"]] = {
+KINDS: dict[str, Callable[..., "Dataset"]] = {
+    "march": _march,
     "growth_map": _growth_map,
     "neutral_curve": _neutral_curve,
     "phase_diagram": _phase_diagram,
+    "well_posedness": _well_posedness,
+    "crosscheck": _crosscheck,
+    "field_map": _field_map,
 }
 
 
@@ -120,69 +176,3 @@ def _state(scene: Any, planned: Plan) -> dict[str, Any]:
         "point": scene.request.point,
         "matrix": planned.matrix,
     }
-
-
-def summary(ds: "Dataset") -> str:
-    """Return what a result says, in a few lines. It needs the Dataset alone: an opened file has a summary too."""
-    rows = [("model", f"{ds.attrs['closure']} on {ds.attrs['flow']}, matrix {ds.attrs['matrix']}")]
-    point = [f"{w} = {ds[w].item():g} {ds[w].units}" for w in ("r", "theta") if w in ds.coords]
-    rows += [("point", ", ".join(point))] if point else []
-    rows.append(("samples", " x ".join(f"{size} {name}" for name, size in ds.sizes.items() if name != "crossing")))
-    rows += _findings(ds)
-    if "plan" in ds.attrs:
-        rows += _planned(ds)
-    if "mass_residual" in ds:
-        x, y, mass = (ds[name] for name in ("momentum_residual_x", "momentum_residual_y", "mass_residual"))
-        rows.append(("base state", f"momentum misses by {np.hypot(x, y).max().item():.2g} {x.units}, "
-                                   f"mass by {abs(mass).max().item():.2g} {mass.units}"))  # fmt: skip
-    parameters = json.loads(ds.attrs["parameters"])
-    rows += [("assumed", f"{word} = {parameters[word]:g}: {why}") for word, why in results.assumptions(ds).items()]
-    return "\n".join([ds.attrs["title"], *(f"  {name:<15}{text}" for name, text in rows)])
-
-
-def _findings(ds: "Dataset") -> list[tuple[str, str]]:
-    """Return the results proper."""
-    if "growth_rate" in ds:
-        growth = ds.growth_rate
-        at = growth.isel(growth.argmax(...))
-        where = _where(at, "wavenumber", "wave_angle")
-        if at.wavenumber == growth.wavenumber[-1]:
-            where += " (the shortest wave sampled: growth may rise further)"
-        share = f"{(growth > 0).mean().item():.1%} of the samples"
-        return [("largest growth", f"{at.item():.5g} {growth.units} at {where}"), ("growing", share)]
-    if "neutral_wavenumber" in ds:
-        q = ds.neutral_wavenumber
-        count = int(q.notnull().sum())
-        found = [("crossings", f"{count} in {int(q.notnull().any('crossing').sum())} directions")]
-        for name, at in (("shortest", q.argmax(...)), ("longest", q.argmin(...))) if count else ():
-            edge = q.isel(at)
-            found.append((f"{name} wave", f"neutral at {edge.item():.5g} {q.units}, {_where(edge, 'wave_angle')}"))
-        return found
-    low, high = json.loads(ds.attrs["unstable_range"])
-    always = json.loads(ds.attrs["always_unstable_range"])
-    return [
-        ("unstable", f"some wavelength for {low:.4g} < delta < {high:.4g}"),
-        ("", f"every wavelength for {always[0]:.4g} <= delta <= {always[1]:.4g}"),
-        *([("check", f"{ds.attrs['disagreements']} of {ds.region.size} samples disagree with a search over directions")]
-          if "disagreements" in ds.attrs else []),
-    ]  # fmt: skip
-
-
-def _planned(ds: "Dataset") -> list[tuple[str, str]]:
-    """Return the rung of the ladder that was taken, and its error where something is approximated."""
-    planned = json.loads(ds.attrs["plan"])
-    words = {"draft": "float32", "standard": "float64", "certified": "float64, signs proven"}
-    precision = f"{ds.attrs['digits']} digits" if "digits" in ds.attrs else words[planned["precision"]]
-    rows = [("sampling", f"{planned['sampling']}, {precision}")]
-    if not ds.attrs["true_error"].startswith("not"):
-        rows.append(("error", f"{planned['predicted_error']:.2g} predicted ({planned['error_kind']}), "
-                              f"{float(ds.attrs['true_error']):.2g} on a probe, of the largest growth"))  # fmt: skip
-    if "sampled" in ds:
-        rows.append(("evaluated", f"{ds.sampled.mean().item():.1%} of the samples; the others are interpolated"))
-    if "sign" in ds:
-        rows.append(("signs", ds.attrs["sign"]))
-    return rows
-
-
-def _where(value: Any, *names: str) -> str:
-    return ", ".join(f"{name} {value[name].item():.5g} {value[name].units}" for name in names)

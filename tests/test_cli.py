@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from stability import runner
+from stability import codegen, runner
 from stability.cli import main
+from stability.closures import CLOSURES
 from stability.errors import ConvergenceError, PrecisionError
 from stability.results import open_results
-from tests.test_scene import DIAGRAM, GOOD
+from tests.test_scene import DIAGRAM, GOOD, MARCH
 
 ROOT = Path(__file__).parent.parent
 
@@ -41,7 +42,7 @@ def test_the_first_page_says_what_it_does_how_to_start_and_what_the_statuses_mea
     page = call("--help").output
     for phrase in ("Linear stability", "stability run figures/scenes/P2.1.toml", "Exit status:", "0    done", "130"):
         assert phrase in page
-    for command in ("run", "explain", "list", "derive"):
+    for command in ("run", "resume", "export", "explain", "list", "derive"):
         assert f"\n  {command} " in page
 
 
@@ -179,6 +180,102 @@ def test_an_interrupt_ends_a_long_run_with_its_status_and_without_a_file(tmp_pat
     assert [p.name for p in tmp_path.iterdir()] == ["long.toml"]
 
 
+SMALL = MARCH.replace("elements = 400", "elements = 60").replace("to = 0.02, count = 5", "to = 1e-3, count = 3")
+
+
+@pytest.fixture
+def marching(call, tmp_path):
+    """Call the command in a folder that holds small.toml, a march of a fraction of a second."""
+    (tmp_path / "scene.toml").unlink()
+    (tmp_path / "small.toml").write_text(SMALL)
+    return call
+
+
+def test_a_march_is_explained_run_and_exported(marching, tmp_path):
+    told = marching("explain", "small.toml")
+    assert told.exit_code == 0, told.output
+    for phrase in ("mesh           polar, 60 elements", "unknowns       2", "time           to 0.001 s, 3 snapshots",
+                   "cost ", "reasons        waves: the first are expected where mu is largest"):  # fmt: skip
+        assert f"\n  {phrase}" in told.stdout
+    assert "warning: 1.1 cells in a wavelength are too few, 10 resolve it" in told.stderr
+    done = marching("run", "small.toml")
+    assert done.exit_code == 0, done.output
+    for phrase in ("perturbed on radial_hopper\n", "marched        to t = 0.001 s, 3 snapshots", "wedge_angle = 15: "):
+        assert phrase in done.stdout
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["small.nc", "small.toml"], "the checkpoint is removed"
+    written = marching("export", "small.nc", "--vtk", "vtk")
+    assert written.stdout == "wrote vtk/small.pvd and 3 snapshots beside it; open it in ParaView\n"
+    assert len(list((tmp_path / "vtk").glob("small_000?.vts"))) == 3
+
+
+def test_what_cannot_be_exported_is_named(marching, tmp_path):
+    (tmp_path / "map.toml").write_text(GOOD)
+    marching("run", "map.toml", "-q")
+    for result, says in (
+        ("map.nc", "map.nc is not the result of a march or a field_map"),
+        ("none.nc", "none.nc cannot be read as a result: "),
+        ("small.toml", "small.toml cannot be read as a result: "),
+    ):
+        done = marching("export", result, "--vtk", "vtk")
+        assert done.exit_code == 2 and done.stderr.startswith(f"error: {says}"), done.output
+
+
+def test_a_march_that_fails_has_its_status_and_can_be_continued_by_a_changed_scene(marching, tmp_path):
+    (tmp_path / "hard.toml").write_text(SMALL.replace("newton = 1e-9", "newton = 1e-30"))  # beyond rounding
+    done = marching("run", "hard.toml")
+    assert done.exit_code == 3, done.output
+    assert done.stderr.splitlines()[-1].startswith("error: Newton's method fails at time 0 s, step 1")
+    assert "stability resume hard.nc.checkpoint --scene CHANGED.toml" in done.stderr
+    again = marching("resume", "hard.nc.checkpoint", "--scene", "small.toml", "-o", "easy.nc")
+    assert again.exit_code == 0, again.output
+    assert "going on from hard.nc.checkpoint: step 0, t = 0 s" in again.stderr
+    assert "continued      from step 0, t = 0 s of another scene" in again.stdout
+    assert not (tmp_path / "hard.nc.checkpoint").exists()
+
+
+def test_a_checkpoint_that_cannot_be_used_has_the_status_of_bad_input_and_is_kept(marching, tmp_path):
+    kept = tmp_path / "small.nc.checkpoint"
+    kept.write_bytes(b"something else")
+    for command in (("run", "small.toml"), ("resume", "small.nc.checkpoint")):
+        done = marching(*command)
+        assert done.exit_code == 2
+        assert done.stderr == (
+            "error: small.nc.checkpoint is not a checkpoint of this toolkit's present format: name another file\n"
+        )
+    assert kept.read_bytes() == b"something else"
+    assert marching("resume", "none.checkpoint").exit_code == 2
+    assert "is a folder" in marching("resume", "none.checkpoint", "-o", ".").stderr
+
+
+def test_a_result_that_cannot_be_written_costs_no_march(marching, monkeypatch, tmp_path):
+    def full(ds, path):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("stability.results.save", full)
+        done = marching("run", "small.toml")
+    assert done.exit_code == 2
+    assert done.stderr.splitlines()[-1] == (
+        "error: --output small.nc cannot be written: No space left on device; the run is kept in "
+        "small.nc.checkpoint: make room, then stability resume small.nc.checkpoint"
+    )
+    assert marching("resume", "small.nc.checkpoint").exit_code == 0
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["small.nc", "small.toml"]
+
+
+def test_a_map_loads_no_solver(tmp_path):
+    (tmp_path / "scene.toml").write_text(GOOD)
+    script = (
+        "import sys\nfrom stability.cli import main\n"
+        "try: main(['explain', 'scene.toml'])\n"
+        "except SystemExit: print(*(m for m in sys.modules if 'timestepper' in m))"
+    )
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, env=environment, check=True)
+    assert done.stdout.splitlines()[-1] == ""
+
+
 @pytest.mark.parametrize("variable", ["NO_COLOR", None])
 def test_errors_are_red_on_a_terminal_unless_no_colour_is_asked_for(variable, tmp_path, monkeypatch):
     monkeypatch.delenv("NO_COLOR", raising=False)
@@ -205,8 +302,17 @@ def test_a_list_has_every_entry_and_every_parameter(call):
     assert call("list", "walls").exit_code == 2
 
 
+def test_a_list_derives_nothing(call, tmp_path, monkeypatch):
+    monkeypatch.setenv("STABILITY_CACHE", str(tmp_path / "cold"))
+    codegen.namespace.cache_clear()
+    monkeypatch.setattr("stability.emit.source", lambda entry: pytest.fail("derived"))
+    page = call("list", "closures").output
+    assert all(f'closure = "{name}"' in page for name in CLOSURES)
+    codegen.namespace.cache_clear()
+
+
 def test_a_list_needs_no_sympy_and_no_unicode(tmp_path):
-    process("list")  # warms the cache of generated modules
+    process("list")  # warms the cache of records
     script = (
         "import sys\nfrom stability.cli import main\n"
         "try: main(['list'])\nexcept SystemExit: print('sympy' in sys.modules)"

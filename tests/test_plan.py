@@ -15,8 +15,9 @@ from stability.plan import plan
 from stability.probe import SAFETY, growth, perturbation, probe, rounding
 from stability.runner import ROUNDING, run
 from stability.scene import load_scene
+from stability.scene.messages import REQUESTS
 from tests.conftest import HOPPER
-from tests.test_scene import DIAGRAM, GOOD
+from tests.test_scene import DIAGRAM, GOOD, MARCH
 
 LADDER = Path(__file__).parent.parent / "figures" / "scenes" / "ladder"
 # Scene -> the rung that it is for (matrix, precision, sampling), and how its error is known.
@@ -191,3 +192,29 @@ def test_planning_loads_no_heavy_library():
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert not {"sympy", "matplotlib", "scipy", "xarray"} & set(done.stdout.split())
+
+
+def test_every_kind_of_request_has_its_plan():
+    assert planning.PLANS.keys() == REQUESTS.keys()
+
+
+def test_a_march_is_planned_with_everything_that_its_scene_says(planned, tmp_path):
+    words = {"kind": "diamond", "elements": 500, "half": False}
+    text = MARCH.replace(
+        'kind = "polar", elements = 400, half = true', 'kind = "diamond", elements = 500, half = false'
+    )
+    text = text.replace("floor = 0.05", 'floor = 0.1\nscheme = "bdf2"\nsolver = "iterative"').replace(
+        "newton = 1e-9", "newton = 1e-7"
+    )
+    path = tmp_path / "other.toml"
+    path.write_text(text)
+    asked = planning.marched(load_scene(path))
+    assert (asked.closure, asked.flow, asked.mesh) == ("perturbed", "radial_hopper", words)
+    assert asked.parameters == HOPPER | {"epsilon": 1e-4} and asked.snapshots == [0.0, 0.005, 0.01, 0.015, 0.02]
+    assert (asked.first, asked.largest, asked.smallest) == (1e-5, 5e-4, 1e-9)
+    assert (asked.scheme, asked.floor, asked.solver, asked.newton) == ("bdf2", 0.1, "iterative", 1e-7)
+    assert (asked.noise, asked.seed, asked.every) == (1e-3, 1, 4)
+    path.write_text(MARCH.replace("perturbation", "#").replace("newton", "#"))
+    plain = planning.marched(load_scene(path))
+    assert (plain.noise, plain.newton) == (0.0, 1e-9)
+    assert planned(text).mesh.startswith("diamond, ") and planned(text).elements == pytest.approx(500, rel=0.05)

@@ -12,7 +12,7 @@ TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 def test_every_block_of_code_runs_and_prints_what_follows_it():
     names: dict = {}
     pairs = re.findall(r"```python\n((?:(?!```).*\n)*)```\n\nprints\n\n((?:    .*\n)+)", TEXT)
-    assert len(pairs) == TEXT.count("```python") == 2
+    assert len(pairs) == TEXT.count("```python") == 3
     for code, expected in pairs:
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):

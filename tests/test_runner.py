@@ -10,12 +10,14 @@ from numpy.testing import assert_array_equal
 
 import stability as st
 from stability.errors import SceneError
-from stability.plan import plan
+from stability.plan import marched, plan
 from stability.results import open_results, save
-from stability.runner import KINDS, run, summary
+from stability.runner import KINDS, run
 from stability.scene import load_scene
 from stability.scene.messages import REQUESTS
-from tests.test_scene import DIAGRAM, GOOD
+from stability.summary import summary
+from stability.timestepper.march import march
+from tests.test_scene import DIAGRAM, GOOD, MARCH
 
 # Directions across the wedge between the velocity characteristic at 45 degrees and the stress characteristic at 28.
 CURVE = (
@@ -142,6 +144,30 @@ def test_progress_reaches_the_end(scene):
     loaded = load_scene(scene(DIAGRAM))
     KINDS["phase_diagram"](loaded, plan(loaded), lambda done, total: seen.append((done, total)))
     assert seen == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_a_march_is_the_one_that_a_script_gets_and_holds_its_forecast(scene):
+    text = MARCH.replace("elements = 400", "elements = 60").replace("to = 0.02, count = 5", "to = 1e-4, count = 2")
+    path = scene(text)
+    ds = run(path)
+    expected = march(marched(load_scene(path)))
+    assert all(ds[name].equals(expected[name]) for name in ds.variables)
+    assert (ds.attrs["scene_text"], ds.attrs["title"]) == (text, "A scene of the tests")
+    assert json.loads(ds.attrs["plan"])["elements"] == 60 and "predicted_error" not in ds.attrs
+    assert json.loads(ds.attrs["plan_warnings"])[0].startswith("1.1 cells in a wavelength are too few")
+
+
+def test_equal_marches_give_equal_files(scene, tmp_path):
+    path = scene(
+        MARCH.replace("elements = 400", "elements = 60").replace("to = 0.02, count = 5", "to = 1e-4, count = 2")
+    )
+    one, other = (save(run(path), tmp_path / name).read_bytes() for name in ("one.nc", "other.nc"))
+    assert one == other
+
+
+def test_only_a_march_keeps_a_checkpoint(scene, tmp_path):
+    with pytest.raises(SceneError, match="a growth_map keeps none, a march alone does"):
+        run(scene(GOOD), checkpoint=tmp_path / "checkpoint")
 
 
 def test_a_bad_scene_is_refused_before_it_runs(scene):

@@ -3,6 +3,7 @@
 import re
 import tomllib
 from dataclasses import FrozenInstanceError
+from importlib import import_module
 from math import isclose
 from pathlib import Path
 
@@ -46,6 +47,21 @@ kind = "phase_diagram"
 delta = { values = [-0.5, 0.0, 0.5] }
 scaled_wavenumber = { from = 0.01, to = 100.0, count = 3, spacing = "log" }
 """
+MARCH = (
+    GOOD.split("[request]")[0].replace('{ value = 2e-5, why = "the first of two values" }', "1e-4")
+    + """
+[request]
+kind = "march"
+mesh = { kind = "polar", elements = 400, half = true }
+snapshots = { from = 0.0, to = 0.02, count = 5 }
+floor = 0.05
+step = { first = 1e-5, largest = 5e-4, smallest = 1e-9 }
+perturbation = { size = 1e-3, seed = 1 }
+checkpoint_every = 4
+[tolerance]
+newton = 1e-9
+"""
+)
 
 
 @pytest.fixture
@@ -318,3 +334,102 @@ def test_no_value_anywhere_ends_in_a_traceback(key, value, load):
         load(text)
     except SceneError as error:
         assert error.problems
+
+
+def test_a_march_holds_what_the_file_says_and_its_defaults(load):
+    request = load(MARCH).request
+    assert request.mesh.model_dump() == {"kind": "polar", "elements": 400, "half": True}
+    assert request.snapshots.samples.tolist() == [0.0, 0.005, 0.01, 0.015, 0.02]
+    assert (request.scheme, request.solver) == ("backward_euler", "direct")
+    assert load(MARCH).tolerance.newton == 1e-9
+    short = MARCH.split("step = ")[0].replace('kind = "polar", ', "").replace(", half = true", "")
+    assert load(short).request.step == request.step and load(short).request.mesh == request.mesh
+    assert load(short).request.perturbation is None and load(short).request.checkpoint_every == 20
+    assert load(short.replace("{ from = 0.0, to = 0.02, count = 5 }", "[0.01]")).request.snapshots.samples == [0.01]
+
+
+def test_the_march_on_the_help_page_loads(load):
+    page = manual.RUN.split("may be left out:\n")[1].split("\n\n")[0]
+    scene = load(MARCH.split("[request]")[0] + page)
+    assert scene.request.mesh.elements == 4000 and scene.request.snapshots.count == 11
+
+
+# The beginning of the only sentence: what to replace in the march, and by what.
+ONE_FAULT_OF_A_MARCH = {
+    "[request] mesh is missing: it is the mesh of the hopper": ("mesh = {", "#"),
+    '[request] mesh.kind = "hex" should be \'polar\', \'graded\' or \'diamond\': it is how the cells lie': (
+        '"polar"', '"hex"'),
+    "[request] mesh.elements = 2 should be greater than or equal to 4: it is the number of elements": ("400", "2"),
+    "[request] mesh.elements = 1000001 should be less than or equal to 1000000": ("400", "1000001"),
+    "[request] mesh.half = 1 should be a valid boolean": ("half = true", "half = 1"),
+    "[request] mesh.elemnts is unknown; did you mean elements? (known: kind, elements, half)": ("elements", "elemnts"),
+    "[request] snapshots is missing: it is the times in s": ("snapshots = {", "#"),
+    "[request] snapshots = {": ("from = 0.0", "from = -0.1"),
+    "[request] snapshots = [0.0] must end after t = 0 s": ("{ from = 0.0, to = 0.02, count = 5 }", "[0.0]"),
+    "[request] snapshots.to = -1.0 must exceed from = 0": ("0.02", "-1.0"),
+    "[request] floor is missing: it is the least ||V|| in 1/s": ("floor = ", "#"),
+    "[request] floor = 0.0 1/s lies outside (0, inf) 1/s: it is the least ||V|| in the rheology": ("0.05", "0.0"),
+    "[request] step.first = -1.0 s lies outside (0, inf) s: it is the first time step": (
+        "1e-5, largest", "-1.0, largest"),
+    "[request] step.first = \"1\" should be a valid number: it is the first time step in s": (
+        "1e-5, largest", '"1", largest'),
+    "[request] step = {\"first\": 0.01, ": ("first = 1e-5", "first = 1e-2"),
+    "[request] scheme = \"rk4\" should be 'backward_euler' or 'bdf2': it is how time is discretised": (
+        "floor", 'scheme = "rk4"\nfloor'),
+    "[request] solver = \"lu\" should be 'direct' or 'iterative'": ("floor", 'solver = "lu"\nfloor'),
+    "[request] perturbation.size = 1.5 lies outside (0, 1): it is the largest random velocity": ("= 1e-3", "= 1.5"),
+    "[request] perturbation.seed = -1 should be greater than or equal to 0": ("seed = 1", "seed = -1"),
+    "[request] perturbation.size is missing: it is the largest random velocity over": ("size = 1e-3, ", ""),
+    "[request] checkpoint_every = 0 should be greater than or equal to 1": ("every = 4", "every = 0"),
+    "[request] point is unknown (known: kind, mesh, snapshots, ": ("floor", "point = { r = 1.0 }\nfloor"),
+    "[request] asks for 6e+08 numbers, over the limit of 5e+07: lower elements or count": (
+        "elements = 400, half = true }\nsnapshots = { from = 0.0, to = 0.02, count = 5 }",
+        "elements = 1000000, half = true }\nsnapshots = { from = 0.0, to = 0.02, count = 100 }"),
+    "[tolerance] newton = 1.0 should be less than 1": ("newton = 1e-9", "newton = 1.0"),
+    "[tolerance] growth = 0.001 is no tolerance of a march: newton is": ("newton = 1e-9", "growth = 1e-3"),
+    "[tolerance] digits = 30 belongs to a growth_map": ("newton = 1e-9", "digits = 30"),
+    "outlet_radius must be less than inlet_radius (outlet_radius = 1.6, inlet_radius = 1.5)": ("= 0.5", "= 1.6"),
+    "wall_friction_angle must not exceed friction_angle": ("= 9.0", "= 40.0"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("sentence", ONE_FAULT_OF_A_MARCH)
+def test_one_fault_of_a_march_is_one_sentence_about_its_place(sentence, problems):
+    good, bad = ONE_FAULT_OF_A_MARCH[sentence]
+    assert MARCH.count(good) >= 1
+    (found,) = problems(MARCH.replace(good, bad, 1))
+    assert found.startswith(sentence)
+
+
+def test_only_a_hopper_is_marched(problems):
+    found = problems(DIAGRAM.split("[request]")[0] + "[request]" + MARCH.split("[request]")[1])
+    assert 'flow = "uniform_strain" cannot be marched: it fills no hopper; choose radial_hopper or ' in "\n".join(found)
+    (other,) = problems(MARCH.replace('"perturbed"', '"rigid_plastic"').replace("epsilon = 1e-4", ""
+                        ).replace('"radial_hopper"', '"radial_hopper_compatible"'))  # fmt: skip
+    assert other.startswith("[parameters] epsilon is missing")
+
+
+def test_only_closures_of_velocity_and_pressure_are_marched(problems, monkeypatch):
+    monkeypatch.setattr(import_module("stability.scene.runs"), "FIELDS", (("u", "v"), "p", "T"))
+    (found,) = problems(MARCH)
+    assert found.startswith('closure = "perturbed" cannot be marched: its fields are (u, v, p), ')
+
+
+def test_a_closure_with_further_fields_is_refused_in_one_sentence(problems):
+    text = MARCH.replace('"perturbed"', '"hyperstress"').replace("epsilon = 1e-4", "hyperviscosity = 1e-6")
+    (found,) = problems(text)
+    assert found == 'closure = "hyperstress" cannot be marched: its fields are (u, v, p, lap_u, lap_v), not (u, v, p)'
+
+
+def test_newton_is_no_tolerance_of_a_map(problems):
+    (found,) = problems(GOOD + "[tolerance]\nnewton = 1e-9\n")
+    assert found == "[tolerance] newton = 1e-09 belongs to a march"
+
+
+def test_faults_of_a_march_are_reported_at_once(problems):
+    text = MARCH.replace('"polar"', '"hex"').replace("0.05", "-1.0").replace("seed = 1", "sede = 1")
+    found = problems(text.replace("= 0.5", "= 1.6").replace("newton = 1e-9", "growth = 1e-3"))
+    assert [p.split(" = ")[0].split(" is ")[0] for p in found] == [
+        "[request] mesh.kind", "[request] perturbation.sede", "[request] floor",
+        "outlet_radius must be less than inlet_radius (outlet_radius", "[tolerance] growth"
+    ]  # fmt: skip

@@ -7,31 +7,23 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from stability.scene.shape import (
-    MAX_SAMPLES,
-    Assumption,
-    GrowthMap,
-    Interval,
-    Layout,
-    Listed,
-    NeutralCurve,
-    PhaseDiagram,
-    Spaced,
-    Table,
-    Tolerance,
-)
+from stability.scene.requests import REQUESTS, Course, Layout, MeshOf, Noise, Steps
+from stability.scene.shape import MAX_SAMPLES, Assumption, Interval, Listed, Spaced, Table, Tolerance
 
-REQUESTS: dict[str, type[Table]] = {
-    "growth_map": GrowthMap,
-    "neutral_curve": NeutralCurve,
-    "phase_diagram": PhaseDiagram,
+_TABLES: dict[Any, type[Table]] = REQUESTS | {
+    "<spaced>": Spaced,
+    "<listed>": Listed,
+    "tolerance": Tolerance,
+    "mesh": MeshOf,
+    "step": Steps,
+    "perturbation": Noise,
+    "saturation": Course,
 }
-_TABLES: dict[Any, type[Table]] = {**REQUESTS, "<spaced>": Spaced, "<listed>": Listed, "tolerance": Tolerance}
 
 RANGE = '{ from = 1.0, to = 1e4, count = 300, spacing = "log" }, or a list'
 MEANING = {
     "title": "one sentence for captions and reports",
-    "closure": "the rheology (stability list closures)",
+    "closure": 'the rheology (stability list closures), or that of a file of your own, as in "my_file.py:NAME"',
     "flow": "the base state (stability list flows)",
     "parameters": 'the numbers printed in the paper, each alone or as { value = 34.0, why = "..." }',
     "assumed": 'the numbers that are not printed, each as { value = 15.0, why = "..." }',
@@ -57,13 +49,48 @@ MEANING = {
     "sign": "float, or certified where signs must be proven",
     "accuracy": "the precision: draft (float32), standard (float64), certified (proven signs) or auto",
     "digits": "the decimal digits of an evaluation in multiprecision",
+    "mesh": 'the mesh of the hopper, as in { kind = "polar", elements = 4000, half = true }',
+    "mesh.kind": "how the cells lie: polar, graded (squares) or diamond (squares on their corners)",
+    "elements": "the number of elements, about",
+    "half": "whether the domain ends at the symmetry line, true or false",
+    "snapshots": "the times in s at which the fields are kept, as in { from = 0.0, to = 0.1, count = 11 }, or a list",
+    "step": "the time steps in s, as in { first = 1e-5, largest = 5e-4, smallest = 1e-9 }",
+    "first": "the first time step in s",
+    "largest": "the largest time step in s",
+    "smallest": "the time step in s at which a march gives up",
+    "scheme": "how time is discretised: backward_euler (first order) or bdf2 (second)",
+    "floor": "the least ||V|| in 1/s that the rheology sees, as in floor = 0.05",
+    "solver": "how linear systems are solved: direct or iterative",
+    "perturbation": "a random velocity in the initial state, as in { size = 1e-3, seed = 1 }",
+    "size": "the largest random velocity over sqrt(g r_0)",
+    "seed": "the seed of the random numbers, a whole number",
+    "checkpoint_every": "the number of time steps from one checkpoint to the next",
+    "parts": "what is checked, a list of cell, neutral, symbol, hopper and saturation",
+    "crosscheck.mesh": "how the cells of the half hopper lie: polar, graded or diamond",
+    "duration": "the duration in s of the runs in the hopper",
+    "crosscheck.step": "the time step in s of those runs",
+    "crosscheck.delta": "the rate of dilation of the cell in which a wave saturates",
+    "crosscheck.elements": "the number of elements of the half hopper, about",
+    "noise": "the largest random velocity over sqrt(g r_0) in one of the two runs",
+    "saturation": "the runs in which a wave saturates, as in [{ epsilon = 1e-4, cells = [32, 64] }]",
+    "epsilon": "the perturbation's time scale in s",
+    "cells": "the numbers of cells in a wavelength, as in [32, 64, 128]",
+    "file": "the file of the flow field: .nc, .vtu, .vts, or other VTK files with the extra vtk",
+    "fields": 'the names in that file by the closure\'s letters, as in { u = "velocity:0", p = "stress" }',
+    "time": "the time in s of the snapshot, the nearest of which is taken; left out: the last",
+    "density": "the density in kg/m3 by which p is divided; left out: p is stress over density already",
+    "field_map.duration": "the time in s over which e-folds are counted; left out: 1/||V|| of each point",
+    "field_map.cells": "the wavelength in cells that the mesh resolves least, as in cells = 2.0",
+    "longest": "the longest wave in m that is looked at; left out: the shorter side of the field's box",
+    "check": "whether verdicts are tried at the other end of the gradients' error bars, true or false",
+    "newton": "the last update of Newton's method, relative to the scales of the fields",
 }
 
 LONGEST = 60  # characters of a wrong value that a message repeats
 SAYS = {
     "union_tag_not_found": "is neither a range nor a list",
     "too_short": "is empty",
-    "too_long": f"has more than {MAX_SAMPLES} values",
+    "too_long": "has more than {max_length} values",
     "string_too_short": "is empty",
     "dict_type": "is not a table",
     "model_type": "is not a table",
@@ -91,7 +118,10 @@ def fitted(raw: dict) -> tuple[Layout | None, list[str]]:
     # A misspelt key is one fault, not an unknown key and a missing one.
     strange = [error["loc"] for error in errors if error["type"] == "extra_forbidden"]
     meant = [(*place[:-1], nearest(str(place[-1]), _keys(place))) for place in strange]
-    return None, [_sentence(e) for e in errors if not (e["type"] == "missing" and e["loc"] in meant)]
+    # Nor is a list whose items are wrong empty, though pydantic is left with none of them.
+    inside = {error["loc"][:n] for error in errors for n in range(len(error["loc"]))}
+    again = {"missing": meant, "too_short": inside}
+    return None, [_sentence(e) for e in errors if e["loc"] not in again.get(e["type"], ())]
 
 
 def _keys(place: tuple) -> list[str]:
@@ -101,7 +131,7 @@ def _keys(place: tuple) -> list[str]:
     elif place[0] in ("parameters", "assumed"):
         table = Assumption
     else:
-        table = _TABLES.get(place[-2], Interval)
+        table = _TABLES.get(next(key for key in reversed(place[:-1]) if isinstance(key, str)), Interval)
     return [field.alias or name for name, field in table.model_fields.items()]
 
 
@@ -129,7 +159,9 @@ def _sentence(error: Any) -> str:
     place, fault, context = error["loc"], error["type"], error.get("ctx", {})
     keys = [key for i, key in enumerate(place) if not _is_tag(i, place)]
     name, word = _name(keys), next(k for k in reversed(keys) if isinstance(k, str))
-    meaning = f": it is {MEANING[word]}" if word in MEANING else ""
+    path = ".".join(map(str, keys[1:]))
+    said = MEANING.get(f"{place[1]}.{path}" if len(place) > 1 else path, MEANING.get(path, MEANING.get(word)))
+    meaning = f": it is {said}" if said else ""
     if fault == "extra_forbidden":
         return unknown(name, word, _keys(place))
     if fault == "missing":
@@ -140,4 +172,5 @@ def _sentence(error: Any) -> str:
         return unknown(f"[request] kind = {_shown(context['tag'])}", context["tag"], REQUESTS)
     if fault == "value_error":
         return f"{name} = {_shown(error['input'])} {context['error']}"  # a sentence of `shape`, which says it all
-    return f"{name} = {_shown(error['input'])} {SAYS.get(fault, error['msg'].removeprefix('Input '))}{meaning}"
+    told = SAYS[fault].format(**context) if fault in SAYS else error["msg"].removeprefix("Input ")
+    return f"{name} = {_shown(error['input'])} {told}{meaning}"

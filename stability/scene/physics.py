@@ -5,9 +5,9 @@ The file need not have the right shape here: what has none is left to `messages.
 
 import json
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import islice
-from math import inf, isfinite, sqrt
+from math import inf, sqrt
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,11 +16,11 @@ from stability import codegen
 from stability.closures import CLOSURES
 from stability.errors import SceneError
 from stability.flows import FLOWS
-from stability.model import Model
+from stability.model import Model, no_truncation
 from stability.parameters import FRICTION_ANGLE, Parameter, merged
-from stability.scene.messages import REQUESTS, nearest, unknown
-
-MAX_SIZE = 50_000_000  # samples of one result: their growth rates and frequencies fill 0.8 GB
+from stability.scene import fields, runs
+from stability.scene.messages import REQUESTS
+from stability.scene.numbers import constants, coordinates, sorted_out, table
 
 # What may stand on an axis of a request.
 AXES = (
@@ -29,115 +29,114 @@ AXES = (
     Parameter("delta", "delta", "1", -sqrt(2), sqrt(2), "rate of dilation tr V/||V||", "paper, P4.5"),
     Parameter("scaled_wavenumber", "L", "1", 0, inf, "scaled wavenumber Lambda epsilon", "paper, P9"),
 )
-AT_A_POINT = ("growth_map", "neutral_curve")  # the kinds of request that look at one point of a flow
+AT_A_POINT = ("growth_map", "neutral_curve", "well_posedness", "crosscheck")  # requests that look at one point
+IN_TIME = {"march": runs.march, "crosscheck": runs.crosscheck}
 MAP_ONLY = {"sign": ("float",), "accuracy": ("auto", "standard"), "digits": ()}  # and what every kind may say of them
+UNTOLERANT = ("well_posedness", "crosscheck", "field_map")  # kinds of which nothing is approximated
 DIAGRAM = {"closure": "perturbed", "flow": "uniform_strain"}  # what a phase diagram is drawn for
 
 
-def physics(raw: dict) -> list[str]:
-    """Return a sentence for each name, number or combination that cannot be modelled."""
-    found: list[str] = []
-    known: dict[str, dict] = {}
+def named(raw: dict, folder: Path) -> tuple[dict[str, Any], list[str]]:
+    """Return ``{"closure": ..., "flow": ...}``, names or the objects of files that are run, and the problems."""
+    found: dict[str, Any] = {}
+    problems: list[str] = []
     for registry in (CLOSURES, FLOWS):
         name = raw.get(registry.kind)
+        given = registry is FLOWS and table(raw, "request").get("kind") == "field_map"
         try:
-            known |= {registry.kind: codegen.load(registry, name)} if isinstance(name, str) else {}
+            if isinstance(name, str) and not given:
+                entry = registry.resolved(name, folder)
+                codegen.load(registry, entry, codegen.RECORDS)
+                found[registry.kind] = entry
         except SceneError as error:
-            found += error.problems
-    request = _table(raw, "request")
-    records = merged(*(module["PARAMETERS"] for module in known.values()))
-    if request.get("kind") == "phase_diagram":
+            problems += (
+                [f'flow = "{fields.FIELD}" belongs to [request] kind = "field_map"']
+                if (registry is FLOWS and name == fields.FIELD)
+                else error.problems
+            )
+    return found, problems
+
+
+def physics(raw: dict, entries: dict[str, Any], folder: Path) -> list[str]:
+    """Return a sentence for each number or combination that cannot be modelled; the entries are those of `named`."""
+    found: list[str] = []
+    registries = {registry.kind: registry for registry in (CLOSURES, FLOWS)}
+    known = {word: codegen.load(registries[word], entry, codegen.RECORDS) for word, entry in entries.items()}
+    request = table(raw, "request")
+    kind = request.get("kind")
+    both = len(known) == 2 or (kind == "field_map" and "closure" in known)
+    try:
+        records = merged(*(module["PARAMETERS"] for module in known.values()))
+    except SceneError as error:
+        return [*error.problems]
+    if kind == "phase_diagram":
         records = {FRICTION_ANGLE.word: FRICTION_ANGLE}  # delta and Lambda epsilon are its axes; nothing else enters
         for word in known:
             if raw[word] != DIAGRAM[word]:
                 found.append(f'{word} = "{raw[word]}" has no phase diagram: it is drawn for "{DIAGRAM[word]}"')
-    constants, problems = _constants(raw, records, complete=len(known) == 2)
+    numbers, problems = constants(raw, records, complete=both)
     found += problems
-    if request.get("kind") in AT_A_POINT and "flow" in known:
-        point, problems = _coordinates(request.get("point", {}), known["flow"]["POINT"])
+    sound = both and len(numbers) == len(records)
+    if kind in AT_A_POINT and "flow" in known:
+        point, problems = coordinates(request.get("point", {}), known["flow"]["POINT"])
         found += problems
-        if len(known) == 2 and len(constants) == len(records) and len(point) == len(known["flow"]["POINT"]):
-            try:
-                with np.errstate(all="ignore"):  # a relation between numbers that do not exist does not hold
-                    Model(raw["closure"], raw["flow"]).base(constants, point)
-            except SceneError as error:
-                found += error.problems
-    return [*found, *_axes(request), *_demands(request, _table(raw, "tolerance"))]
+        if sound and len(point) == len(known["flow"]["POINT"]):
+            found += base(entries, numbers, point) or _formless(entries, request, table(raw, "tolerance"))
+    if kind in IN_TIME:
+        found += IN_TIME[kind](raw, known)
+    if kind == "field_map":
+        found += fields.field_map(raw, known, folder)
+    if kind == "march" and sound and raw["flow"] in runs.MARCHED and known["closure"]["FIELDS"] == runs.FIELDS:
+        found += runs.hopper_base(entries, numbers)
+    return [*found, *_axes(request), *_demands(request, table(raw, "tolerance"))]
 
 
-def _table(raw: dict, name: str) -> dict:
-    return raw[name] if isinstance(raw.get(name), dict) else {}
+def base(entries: dict[str, Any], parameters: dict, point: dict) -> list[str]:
+    """Return what is wrong with the base state at a point."""
+    try:
+        with np.errstate(all="ignore"):  # a relation between numbers that do not exist does not hold
+            Model(entries["closure"], entries["flow"]).base(parameters, point)
+    except SceneError as error:
+        return [*error.problems]
+    return []
 
 
-def _number(given: Any) -> float | None:
-    """Return the number of an entry, or None where `messages.fitted` has found that it is none."""
-    given = given.get("value") if isinstance(given, dict) else given
-    return given if isinstance(given, int | float) and not isinstance(given, bool) and isfinite(given) else None
-
-
-def _sorted_out(record: Parameter, given: Any, name: str) -> tuple[dict, list[str]]:
-    """Return ``{word: number}`` or ``{}``, and the problems, of one number called ``[table] word`` in the file."""
-    table, word = name.split()
-    if (value := _number(given)) is None:
-        return {}, []
-    problem = replace(record, word=word).problem(value, table)
-    return ({}, [problem]) if problem else ({record.word: value}, [])
-
-
-def _constants(raw: dict, records: dict[str, Parameter], complete: bool) -> tuple[dict, list[str]]:
-    """Return the valid parameters, and the problems. Which words are needed is known only where ``complete``."""
-    good: dict[str, float] = {}
-    found: list[str] = []
-    seen: set[str | None] = set()
-    for table in ("parameters", "assumed"):
-        for word, given in _table(raw, table).items():
-            name = f"[{table}] {word}"
-            if word in seen:
-                found.append(f"{name} stands under [parameters] too: keep it there if it is printed, here if it is not")
-            elif word in records:
-                valid, problems = _sorted_out(records[word], given, name)
-                good |= valid
-                found += problems
-            elif complete:
-                found.append(unknown(name, word, records))
-                seen.add(nearest(word, records))  # a misspelt word is not missing as well
-            seen.add(word)
-    for word, record in records.items() if complete else ():
-        if word not in seen:
-            where = "a value that is not printed belongs under [assumed], with its reason"
-            found.append(f"[parameters] {word} is missing: it is {record.described}, in {record.range}; {where}")
-    return good, found
-
-
-def _coordinates(given: Any, records: tuple[Parameter, ...]) -> tuple[dict, list[str]]:
-    """Return the valid coordinates of a point, and the problems."""
-    good: dict[str, float] = {}
-    found: list[str] = []
-    names = [record.word for record in records]
-    if not isinstance(given, dict):
-        return {}, []
-    for word in given:
-        if word not in names:
-            name = f"[request] point.{word}"
-            found.append(unknown(name, word, names) if names else f"{name} is unknown: this flow is uniform")
-    for record in records:
-        if record.word in given:
-            valid, problems = _sorted_out(record, given[record.word], f"[request] point.{record.word}")
-            good |= valid
-            found += problems
-        else:
-            found.append(f"[request] point.{record.word} is missing: it is {record.described}, in {record.range}")
-    return good, found
+def _formless(entries: dict[str, Any], request: dict, tolerance: dict) -> Iterator[str]:
+    """Yield what needs eigenvalues in closed form, if the closure has none."""
+    model = Model(entries["closure"], entries["flow"])
+    if model.closed:
+        return
+    matrix, kind = request.get("matrix"), request.get("kind")
+    if matrix in ("truncated", "leading"):
+        yield f'[request] matrix = "{matrix}": {no_truncation(model.closure_name)}'
+    asked = ['[request] kind = "neutral_curve"'] if kind == "neutral_curve" else []
+    if request.get("sampling") == "adaptive":
+        asked.append('[request] sampling = "adaptive"')
+    said = {f"[tolerance] {word}": tolerance.get(word) for word in ("growth", "digits", "sign", "accuracy")}
+    plain = (None, "float", "standard", "auto")
+    asked += [f"{word} = {json.dumps(v, default=str)}" for word, v in said.items() if v not in plain]
+    for what in asked:
+        yield (
+            f"{what} needs eigenvalues in closed form, and closure {model.closure_name} has {model.modes} modes and "
+            "none: ask for a growth_map without tolerance, or for well_posedness"
+        )
 
 
 def _demands(request: dict, tolerance: dict) -> Iterator[str]:
     """Yield what is asked in combinations that nothing can give."""
+    kind, said = request.get("kind"), {word: json.dumps(value, default=str) for word, value in tolerance.items()}
     asked = [word for word, plain in MAP_ONLY.items() if tolerance.get(word) not in (None, *plain)]
-    if request.get("kind") in REQUESTS and request["kind"] != "growth_map":
+    if kind in REQUESTS and kind != "growth_map":
         for word in asked:
-            yield f"[tolerance] {word} = {json.dumps(tolerance[word], default=str)} belongs to a growth_map"
+            yield f"[tolerance] {word} = {said[word]} belongs to a growth_map"
     elif request.get("sampling") == "grid" and "digits" in asked:
         yield '[request] sampling = "grid" excludes [tolerance] digits: they are too dear for a full grid'
+    if kind in UNTOLERANT and "growth" in tolerance:
+        yield f"[tolerance] growth = {said['growth']} belongs to a growth_map"
+    if kind == "march" and "growth" in tolerance:
+        yield f"[tolerance] growth = {said['growth']} is no tolerance of a march: newton is"
+    if kind in REQUESTS and kind != "march" and "newton" in tolerance:
+        yield f"[tolerance] newton = {said['newton']} belongs to a march"
     if request.get("frequency") is True and request.get("matrix") in ("truncated", "leading"):
         yield f'[request] frequency = true needs matrix = "full": "{request["matrix"]}" leaves out the Doppler shift'
 
@@ -152,9 +151,9 @@ def _axes(request: dict) -> Iterator[str]:
         ends = {f"[request] {record.word}.{end}": given.get(end) for end in ("from", "to")}
         items = {f"[request] {record.word}[{i}]": value for i, value in enumerate(listed)}
         for named, most in ((ends, 2), (items, 1)):
-            problems = (problem for name, value in named.items() for problem in _sorted_out(record, value, name)[1])
+            problems = (problem for name, value in named.items() for problem in sorted_out(record, value, name)[1])
             yield from islice(problems, most)
         count = given.get("count", len(listed))
         size *= count if isinstance(count, int) and count > 0 else 1
-    if size > MAX_SIZE:
-        yield f"[request] asks for {size:.2g} samples, over the limit of {MAX_SIZE:.0e}: lower a count"
+    if size > runs.MAX_SIZE:
+        yield f"[request] asks for {size:.2g} samples, over the limit of {runs.MAX_SIZE:.0e}: lower a count"

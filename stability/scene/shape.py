@@ -1,4 +1,4 @@
-"""The shape of a scene: its tables as pydantic models."""
+"""The shape of a scene: tables that all kinds of requests share, as pydantic models."""
 
 from math import inf
 from typing import Annotated, Any, Literal
@@ -99,56 +99,20 @@ Axis = Annotated[Annotated[Spaced, Tag("<spaced>")] | Annotated[Listed, Tag("<li
 Matrix = Literal["auto", "full", "truncated", "leading"]
 
 
-class GrowthMap(Table):
-    """Growth rate and frequency over wavenumber and direction.
-
-    ``frequency`` true asks for it, which only D has; None leaves it out where a cheaper matrix will do.
-    """
-
-    kind: Literal["growth_map"]
-    point: dict[str, float] = {}
-    wavenumber: Axis
-    wave_angle: Axis
-    matrix: Matrix = "auto"
-    sampling: Literal["auto", "grid", "adaptive"] = "auto"
-    frequency: bool | None = None
-
-
-class NeutralCurve(Table):
-    """Wavenumbers where the growth rate changes sign, per direction."""
-
-    kind: Literal["neutral_curve"]
-    point: dict[str, float] = {}
-    wavenumber: Interval | None = None
-    wave_angle: Axis
-    resolve: float | None = Field(default=None, gt=0)
-    matrix: Matrix = "auto"
-
-
-class PhaseDiagram(Table):
-    """Stable, unstable and ill-posed over the rate of dilation and the scaled wavenumber.
-
-    ``growth`` false asks for the regions alone, which the boundary in closed form decides.
-    """
-
-    kind: Literal["phase_diagram"]
-    delta: Axis
-    scaled_wavenumber: Axis
-    growth: bool = True
-
-
 class Tolerance(Table):
     """What a result must hold; `plan` picks the cheapest model that does.
 
     ``growth`` is relative to the largest growth rate, and for a wave that decays faster than that to its own rate.
     ``accuracy`` names a precision: draft is float32, standard float64, certified float64 with proven signs, which is
-    what ``sign`` certified asks for too. ``digits`` evaluates in multiprecision.
+    what ``sign`` certified asks for too. ``digits`` evaluates in multiprecision. ``newton`` is for a march: the last
+    update of Newton's method, relative to the scales of the fields.
     """
 
     growth: float | None = Field(default=None, gt=0, lt=1)
     sign: Literal["float", "certified"] = "float"
     accuracy: Literal["auto", "draft", "standard", "certified"] = "auto"
     digits: int | None = Field(default=None, ge=16, le=1000)
+    newton: float | None = Field(default=None, gt=0, lt=1)
 
     @model_validator(mode="after")
     def _consistent(self) -> "Tolerance":
@@ -162,18 +126,3 @@ class Tolerance(Table):
     def certified(self) -> bool:
         """Whether signs must be proven."""
         return "certified" in (self.sign, self.accuracy)
-
-
-Request = Annotated[GrowthMap | NeutralCurve | PhaseDiagram, Field(discriminator="kind")]
-
-
-class Layout(Table):
-    """The tables of a scene."""
-
-    title: str
-    closure: str
-    flow: str
-    parameters: dict[str, Entry] = {}
-    assumed: dict[str, Assumption] = {}
-    request: Request
-    tolerance: Tolerance = Tolerance()
