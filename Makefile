@@ -14,19 +14,25 @@ unexport PYTHONDONTWRITEBYTECODE
 unexport PYTHONPATH
 unexport PYTHONHOME
 
-.PHONY: help figures test derivations lint bench clean distclean lock
+.PHONY: help figures figures-full test derivations docs lint bench clean distclean lock
 
 help:           ## this list
-	@sed -n 's/^\([a-z]*\):[^#]*## /\1	/p' Makefile | expand -t 14
+	@sed -n 's/^\([a-z-]*\):[^#]*## /\1	/p' Makefile | expand -t 14
 
 figures: .venv/.ok        ## draw every figure into figures/out (ARGS= goes to python -m figures)
 	$(VENV_PYTHON) -m figures $(ARGS)
 
+figures-full: .venv/.ok   ## the same with the fine runs of N1 to N3, an hour; stopped, it goes on where it was
+	$(VENV_PYTHON) -m figures --full $(ARGS)
+
 test: .venv/.ok           ## the tests but for the slow ones (ARGS= goes to pytest; ARGS='-m ""' runs all, as .ci/run does)
-	$(VENV_PYTHON) -m pytest -m "not slow" $(ARGS)
+	$(VENV_PYTHON) -m pytest -n 2 -m "not slow" $(ARGS)
 
 derivations: .venv/.ok    ## derive the equations again, to verdicts (ARGS= goes to python -m derivations)
 	$(VENV_PYTHON) -m derivations $(ARGS)
+
+docs: .venv/.ok           ## compute the tables of docs/closures.md again
+	$(VENV_PYTHON) -m docs.tables
 
 lint: .venv/.lint         ## ruff, its formatter, mypy
 	.venv/bin/ruff check .

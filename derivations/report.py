@@ -15,7 +15,9 @@ Written by `python -m derivations`; do not edit. Labels are the paper's LaTeX la
 in `derivations/` and compared with what the package derives from its balance laws: a symbolic zero, or else a
 counter-example, evaluated with 30 digits. Verdicts follow from those comparisons; items judged by reading alone say
 "by inspection".
-Figures I1 and N1 to N3 show a sketch and simulations: nothing in them can be derived, and they are not judged.
+Figure I1 is a sketch and is not judged. Figures N1 to N3 and what the text says of its runs cannot be derived: the last
+group judges them by runs of the package's time-stepper, with the threshold and the numbers beside each statement
+(`derivations/runs.json`, written by `python -m derivations runs`).
 """
 
 NOTATION = (

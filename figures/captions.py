@@ -1,4 +1,8 @@
-"""The captions: what is seen. Parameters, assumptions and residuals are appended from the results."""
+"""The captions: what is seen. Parameters, assumptions, residuals and runs are appended from the results."""
+
+from xarray import Dataset
+
+from figures.fronts import SHOWING, place, visible
 
 I1 = """Schematic of a shear band: two blocks of grains slide past each other. Nearly all shear, and with it the jump of
 the velocity u, is taken up by a band only several grain diameters d thick and as long as the container. Dark: grains
@@ -28,3 +32,29 @@ which the unperturbed equations are unstable (figure L1). Circle: the fastest wa
 = {least:.2g} to {most:.2g} 1/m, depending on direction, are longer than the hopper, along which the coefficients vary:
 the growth rate has no meaning there. (b) One tongue over the angle that is left to the null direction of M at 45 deg,
 so that its tip can be seen. The neutral curve closes at |xi| = {closed}: no shorter wave grows in any direction."""
+
+N1 = """Average stress in the hopper, t = {times}. Wavefronts of two families appear in the upper half, sharpen into
+bands, and fill the hopper downwards. {first} By local theory the fastest waves are 3 to 3.5 cm long: four cells of the
+4,000 elements that the paper had, which lengthen them."""
+
+N2 = """Radial slices at theta = {angle} deg of the average stress (left) and of the tangential velocity (right), from
+the run of figure N1. The tangential velocity jumps across the bands. {first}"""
+
+N3 = """(a) Radial slices at theta = {angle} deg of the average stress, each shifted by -1 m2/s2 from the one above.
+{beside}{first} (b) Its waves on the same ray: the average stress less its smooth part. Full line: the path of a wave at
+the speed measured from t = {after} s on by least squares, {speeds}; dashed: the path of the material. (c) Wavelength of
+the first waves, at t = 500 epsilon: geometric means and standard errors over four windows along the axis, at r =
+{windows} m. Full line: the power law through them, with an exponent of {exponent}; sqrt(mu epsilon) has 1/2."""
+
+
+def first_seen(ds: Dataset) -> str:
+    """Return a sentence on when and where waves first show in a run."""
+    try:
+        first = ds.isel(time=visible(ds))
+    except ValueError:
+        return f"No wave of the average stress reaches {SHOWING:.0%} of its largest value."
+    r, theta = place(first, "pressure")
+    return (
+        f"Snapshots begin where waves of the average stress first reach an amplitude of {SHOWING:.0%} of its largest "
+        f"value: at t = {first.time.item():.4g} s, around r = {r:.3g} m, theta = {theta:.3g} deg."
+    )

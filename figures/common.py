@@ -11,16 +11,26 @@ from matplotlib.figure import Figure
 from xarray import Dataset
 
 import stability as st
+from figures.fronts import visible
+from stability.errors import CheckpointError
+from stability.plan import marched
 from stability.plotting import GROWTH, LINE, loop, unstable_regions
-from stability.results import save, versions
+from stability.results import described, save, versions
+from stability.scene import Scene
+from stability.timestepper import checkpoint as checkpoints
 
-Result = Callable[[str], Dataset]  # what a figure is drawn from: the name of a scene -> its result
+# What a figure is drawn from: the name of a scene -> its result. With beside=True, of a run that is made only when it
+# is asked for, None where it has not been made.
+Result = Callable[..., Any]
 
 HERE = Path(__file__).parent
 SCENES = HERE / "scenes"
 STYLE = HERE / "style.mplstyle"
 SINGLE, DOUBLE = 86 / 25.4, 178 / 25.4  # inches: the column widths of most journals
 RIM = {0: "0°, $\\mathbf{e}_r$", 90: "90°, $\\mathbf{e}_\\theta$", 180: "180°", 270: "270°"}
+
+# The lines of a run and of a finer one beside it.
+COLOURS: tuple[dict[str, Any], ...] = ({"color": "black", "lw": 0.9}, {"color": "#d1690e", "lw": 0.7})
 
 # Degrees from e_r to the major principal stress (the axis of the smaller eigenvalue of A) on the hopper's axis: it
 # converges, so that it is squeezed across, along e_theta.
@@ -33,15 +43,64 @@ def page(width: float, millimetres: float) -> Figure:
 
 
 def result(name: str, folder: Path, fresh: bool = False, scenes: Path = SCENES) -> Dataset:
-    """Return the result of a scene: from ``folder`` if the same scene and versions wrote it, else computed and kept."""
-    scene, kept = st.load_scene(scenes / f"{name}.toml"), folder / f"{name}.nc"
-    if kept.exists() and not fresh:
-        ds = st.open_results(kept)
-        if ds.attrs["scene_text"] == scene.text and json.loads(ds.attrs["versions"]) == versions():
-            return ds
-    ds = st.run(scene)
-    save(ds, kept)
+    """Return the result of a scene: from ``folder`` if it is still what the scene gives, else computed and kept.
+
+    A march shows how far it is and keeps a checkpoint, from which it goes on where it was interrupted.
+    """
+    if not fresh and (ds := kept(name, folder, scenes)) is not None:
+        return ds
+    scene = st.load_scene(scenes / f"{name}.toml")
+    if scene.request.kind != "march":
+        ds = st.run(scene)
+        save(ds, folder / f"{name}.nc")
+        return ds
+    checkpoint = folder / f"{name}.nc.checkpoint"
+    if fresh or outdated(checkpoint, scene):
+        checkpoints.remove(checkpoint)
+    ds = described(st.run(scene, progress=True, checkpoint=checkpoint), signature=signature(scene))
+    save(ds, folder / f"{name}.nc")
+    checkpoints.remove(checkpoint)
     return ds
+
+
+def kept(name: str, folder: Path, scenes: Path = SCENES) -> Dataset | None:
+    """Return the result in ``folder`` if the same scene, versions and, of a march, sources wrote it."""
+    scene, path = st.load_scene(scenes / f"{name}.toml"), folder / f"{name}.nc"
+    if not path.exists():
+        return None
+    ds = st.open_results(path)
+    same = ds.attrs["scene_text"] == scene.text and json.loads(ds.attrs["versions"]) == versions()
+    if scene.request.kind == "march":
+        same = same and json.loads(ds.attrs.get("signature", "{}")) == signature(scene)
+    return ds if same else None
+
+
+def signature(scene: Scene) -> dict[str, str]:
+    """Return what decides the numbers of a march."""
+    return marched(scene).signature(scene.text)
+
+
+def outdated(checkpoint: Path, scene: Scene) -> bool:
+    """Return whether a checkpoint is of another scene or of other sources, or cannot be read."""
+    try:
+        return checkpoint.exists() and not checkpoints.load(checkpoint, signature(scene))
+    except CheckpointError:
+        return True
+
+
+def story(ds: Dataset, apart: float, count: int) -> list[float]:
+    """Return the times of a figure's snapshots: from where waves first show, or as late as the run allows, on."""
+    try:
+        start = ds.time.values[visible(ds)]
+    except ValueError:
+        start = ds.time.values[-1]
+    start = min(start, ds.time.values[-1] - (count - 1) * apart)
+    return [float(ds.time.sel(time=start + i * apart, method="nearest")) for i in range(count)]
+
+
+def ray(ds: Dataset, angle: float) -> Dataset:
+    """Return a march along the ray of its mesh next to an angle (deg)."""
+    return ds.sel(theta=angle, method="nearest")
 
 
 def characteristics(ds: Dataset) -> dict[str, list[float]]:

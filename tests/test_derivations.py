@@ -34,9 +34,11 @@ NOT_PLAIN = {
         "after (P9): ill-posed",
         "D, 0 < δ < k",
         "D', δ = 0",
+        "axisymmetric extension in 3-D",
         "Ψ_w",
         "δ of the radial flow",
         "μ largest near the centre",
+        *("runs: first where μ is largest", "runs: jumps, or steep waves"),
     ],
     Kind.MISPRINT: [
         *("I4", "I6", "L0", "M_ijkl", "IPRF", "denominator of (L5)", "P1.2", "P2.1", "P8D", "P9"),
@@ -44,7 +46,7 @@ NOT_PLAIN = {
     ],
     Kind.FAILS: ["L4, second line", "(P5), (P6) with (P1.2)", "case 1", "case 2"],
 }
-HOLDING = 46
+HOLDING = 61
 
 
 @cache

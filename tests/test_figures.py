@@ -9,14 +9,17 @@ import pytest
 from numpy.testing import assert_allclose
 
 import stability as st
-from figures import L1, P1, P2_1
+from figures import L1, P1, P2_1, common
 from figures.__main__ import FIGURES, main, write
-from figures.common import SCENES, STRESS_AXIS, characteristics, result
+from figures.common import SCENES, STRESS_AXIS, characteristics, kept, result
 from figures.grains import packing
+from stability.errors import Interrupted
 from stability.model import Model
 from stability.plotting import unstable_regions
 from stability.results import assumptions
+from stability.timestepper import integrate
 
+MARCHES = ("N1", "N2", "N3")  # their runs take half a minute even on 400 elements
 # Samples of the reduced scenes: enough for the shape, little enough for a second.
 COUNTS = {"delta": 38, "scaled_wavenumber": 6, "wavenumber": 41, "wave_angle": 361}
 
@@ -26,7 +29,7 @@ def small(tmp_path_factory):
     """Return a folder with every scene at a reduced number of samples."""
     folder = tmp_path_factory.mktemp("scenes")
     for path in SCENES.glob("*.toml"):
-        text = path.read_text()
+        text = re.sub(r"elements = \d+", "elements = 400", path.read_text())  # of a march, none of which is resolved
         for axis, count in COUNTS.items():
             text = re.sub(rf"^({axis} *=.*count = )\d+", rf"\g<1>{count}", text, flags=re.M)
         (folder / path.name).write_text(text)
@@ -46,7 +49,12 @@ def data(small, tmp_path_factory):
     return lambda name: result(name, folder, scenes=small)
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.slow) if n in ("I1", "P1") else n for n in FIGURES])
+def but_for(*names):
+    """Return all figures, those named marked as slow."""
+    return [pytest.param(name, marks=pytest.mark.slow) if name in names else name for name in FIGURES]
+
+
+@pytest.mark.parametrize("name", but_for("I1", "P1", *MARCHES, "X1", "A1", "A3"))
 def test_two_runs_write_the_same_bytes(name, drawn, small, tmp_path):
     first, second = drawn(name), write(name, tmp_path, scenes=small)
     assert {path.suffix for path in first} >= {".pdf", ".png", ".txt"}
@@ -54,7 +62,7 @@ def test_two_runs_write_the_same_bytes(name, drawn, small, tmp_path):
         assert one.name == other.name and one.read_bytes() == other.read_bytes()
 
 
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize("name", but_for(*MARCHES, "X1", "A1", "A3"))
 def test_fonts_are_embedded_whole_and_columns_are_86_or_178_mm_wide(name, drawn):
     pdf, png, *_ = drawn(name)
     assert b"/FontFile2" in pdf.read_bytes() and b"/Type3" not in pdf.read_bytes()
@@ -62,7 +70,7 @@ def test_fonts_are_embedded_whole_and_columns_are_86_or_178_mm_wide(name, drawn)
     assert_allclose(pixels / 300 * 25.4, 86 if name in ("I1", "L1") else 178, atol=25.4 / 300)
 
 
-@pytest.mark.parametrize("name", ["L1", "P1", "P2.1"])
+@pytest.mark.parametrize("name", ["L1", "P1", "P2.1", *(pytest.param(n, marks=pytest.mark.slow) for n in MARCHES)])
 def test_captions_list_every_assumed_parameter_with_its_reason(name, drawn):
     files = drawn(name)
     caption = " ".join(files[2].read_text().split())
@@ -155,6 +163,60 @@ def test_a_kept_result_is_read_again_until_its_scene_changes(small, tmp_path, mo
     scene.write_text(scene.read_text() + "# changed\n")
     result("P1", **ask)
     assert len(runs) == 3
+
+
+MARCH = """
+title = "a few steps"
+closure = "perturbed"
+flow = "radial_hopper"
+[parameters]
+friction_angle = 34.0
+wall_friction_angle = 9.0
+epsilon = 1e-3
+wedge_angle = 15.0
+outlet_radius = 0.5
+inlet_radius = 1.5
+gravity = 9.81
+[request]
+kind = "march"
+mesh = { elements = 100 }
+snapshots = { from = 0.0, to = 4e-3, count = 3 }
+floor = 0.05
+checkpoint_every = 2
+"""
+
+
+def test_an_interrupted_march_goes_on_and_is_kept_until_its_sources_change(tmp_path, monkeypatch):
+    (tmp_path / "M.toml").write_text(MARCH)
+    ask = {"folder": tmp_path, "scenes": tmp_path}
+    advanced, taken = integrate.advanced, []
+
+    def counted(*state):
+        if len(taken) == 7:
+            raise KeyboardInterrupt
+        taken.append(state)
+        return advanced(*state)
+
+    monkeypatch.setattr(integrate, "advanced", counted)
+    with pytest.raises(Interrupted):
+        result("M", **ask)
+    monkeypatch.setattr(integrate, "advanced", advanced)
+    found, alone = result("M", **ask), st.run(tmp_path / "M.toml")
+    assert not list(tmp_path.glob("*.checkpoint")) and found.sizes["step"] > 7
+    assert found.drop_attrs().identical(alone.drop_attrs())
+    assert kept("M", **ask) is not None
+    monkeypatch.setattr(common, "signature", lambda scene: {"sources": "changed"})
+    assert kept("M", **ask) is None
+
+
+def test_a_run_that_stands_beside_is_not_made_unless_it_is_asked_for(small, tmp_path, monkeypatch):
+    asked = []
+    monkeypatch.setitem(FIGURES, "L1", lambda result: asked.append(result("N1-full", beside=True)) or L1.draw(result))
+    monkeypatch.setattr(st, "run", lambda scene, run=st.run, **how: run(scene, **how) if "L1" in scene.title else 1 / 0)
+    write("L1", tmp_path, scenes=small)
+    assert asked == [None]
+    with pytest.raises(ZeroDivisionError):
+        write("L1", tmp_path, full=True, scenes=small)
 
 
 def test_grains_do_not_overlap_by_more_than_a_tenth_and_come_from_a_fixed_seed():
