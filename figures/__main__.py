@@ -7,7 +7,7 @@ from pathlib import Path
 
 from matplotlib import style
 
-from figures import A1, A2, A3, I1, L1, N1, N2, N3, P1, P2_1, X1
+from figures import A1, A2, A3, F1, I1, L1, N1, N2, N3, P1, P2_1, X1
 from figures.common import HERE, STYLE, kept, result
 from stability.errors import Interrupted
 from stability.plotting import save
@@ -22,6 +22,7 @@ FIGURES = {
     "N2": N2.draw,
     "N3": N3.draw,
     "X1": X1.draw,
+    "F1": F1.draw,
     "A1": A1.draw,
     "A2": A2.draw,
     "A3": A3.draw,

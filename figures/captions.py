@@ -58,3 +58,8 @@ def first_seen(ds: Dataset) -> str:
         f"Snapshots begin where waves of the average stress first reach an amplitude of {SHOWING:.0%} of its largest "
         f"value: at t = {first.time.item():.4g} s, around r = {r:.3g} m, theta = {theta:.3g} deg."
     )
+
+
+F1 = """The flow field of the run of figure N3, judged at every node as if it had come from somewhere else, before and
+after bands have formed. Above: the verdict on plane waves of the perturbed equations about the state there; below: the
+e-folds that the fastest wave of two cells makes in {duration:g} s. {answers}"""

@@ -52,7 +52,7 @@ def field_growth(ds: Dataset, ax: Axes, levels: Any, name: str = "grid_e_folds")
     code = np.digitize(ds[name].values, bounds[1:-1]).astype(float)
     code[~(ds["verdict"].values > 0)] = np.nan
     drawn = coloured(ds, ax, code, colours, BoundaryNorm(np.arange(-0.5, len(levels) + 1), len(levels) + 1))
-    bar = ax.figure.colorbar(drawn, ax=ax, orientation="horizontal", pad=0.16, shrink=0.9)
+    bar = ax.figure.colorbar(drawn, ax=ax, orientation="horizontal", pad=0.26, shrink=0.9)
     bar.set_ticks([i + 0.5 for i in range(len(levels))], labels=[f"{v:g}" for v in levels])
     bar.set_label(LABELS.get(name, name.replace("_", " ")).format(cells=float(ds.attrs["cells"])))
     return drawn

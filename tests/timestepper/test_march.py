@@ -194,7 +194,7 @@ def test_a_checkpoint_of_another_run_is_refused_and_kept(tmp_path):
 
 def test_the_signature_names_scene_versions_and_sources(monkeypatch):
     one = ASKED.signature("text")
-    assert one.keys() == {"scene", "granular-stability", "numpy", "scipy", "numba", "pyamg", "sources"}
+    assert one.keys() == {"scene", "granular-stability", "numpy", "scipy", "numba", "pyamg", "numba off", "sources"}
     assert one == ASKED.signature("text")
     assert one["scene"] != ASKED.signature("other")["scene"]
     assert one["sources"] != replace(ASKED, closure="rigid_plastic").signature("text")["sources"]
