@@ -6,8 +6,9 @@ at p = C, is the critical state, and normality gives ``f = dY/dp = 2 s (1 - p/C)
 pressure, compaction above.
 
 The leading matrix is never positive; it vanishes where cos 2phi = f (phi from the extension axis), and there
-``lambda^2 = q^2 phi Y_phi f/rho``: waves travel while the medium compacts and grow as q while it dilates. The
-direction is the one in which the perturbed system's leading matrix vanishes: f = delta/sqrt(2 - delta^2).
+``lambda^2 = q^2 phi Y_phi f/rho``: in that direction waves travel while the medium compacts and grow as q while it
+dilates. It is the one in which the perturbed system's leading matrix vanishes: f = delta/sqrt(2 - delta^2). Beside it
+slow compaction still leaves growth at a bounded rate, and at f = 0 growth is as q^(2/3) (figure A3).
 """
 
 from math import inf
