@@ -118,10 +118,16 @@ def test_a_checkpoint_of_other_sources_is_refused_by_a_changed_scene_too(stopped
         resume(path)
 
 
+def heeding() -> None:
+    """Undo what a shell does to its background jobs, such as a CI run: they are started deaf to Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def process(folder: Path, *arguments: str) -> subprocess.Popen:
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     command = [sys.executable, "-m", "stability", *arguments, "--quiet"]
-    return subprocess.Popen(command, cwd=folder, env=environment, stderr=subprocess.PIPE, text=True)
+    options = {"cwd": folder, "env": environment, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(command, **options, preexec_fn=heeding if os.name == "posix" else None)
 
 
 def killed_at_random(tmp_path: Path, kills: int, seed: int) -> set[int]:
