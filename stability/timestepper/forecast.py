@@ -23,14 +23,14 @@ GROWTH = 1.3  # of a step after an easy one
 # Seconds of a march, and of one time step of it, on one core of a 2.5 GHz machine: rough, for choosing a mesh.
 COST = {
     "start": 0.5,  # mesh, pattern, ordering, result
-    "seconds": 0.06,  # at so many elements, on the base state
+    "seconds": 0.1,  # at so many elements, on the base state
     "elements": 4000,
     "power": 1.3,  # how it grows with the number of elements
     "banded": 2.5,  # times that, once there are bands: more iterations, more factors
     "bdf2": 1.0,
     "backward_euler": 1.0,
     "direct": 1.0,
-    "iterative": 1.0,
+    "iterative": 10.0,  # a solve costs several factorisations (benchmarks)
     "default": 4.0,
 }
 
