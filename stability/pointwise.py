@@ -13,12 +13,12 @@ Its derivative by m is zero above (m = ||V||) and m does not vary below, so that
 from itertools import product
 from typing import Any
 
-from sympy import Expr, Symbol
+from sympy import Expr, Pow, Symbol, log
 
 from stability import emit
 from stability.closures.base import Closure, norm
 from stability.closures.plane_flow import V
-from stability.symbols import body_force, gradient, symbol
+from stability.symbols import body_force, gradient, p, symbol
 
 AXES = (0, 1)
 m = symbol("m")
@@ -43,6 +43,13 @@ def derivatives(law: Entries, by: dict[int, Symbol]) -> Entries:
 def entry_name(table: str, index: tuple) -> str:
     """Return the name of an entry in generated code."""
     return f"{table.lower()}_{''.join(map(str, index))}"
+
+
+def needs_pressure(expression: Expr) -> bool:
+    """Return whether an expression exists for p > 0 only: it has a root, a logarithm or a quotient of p."""
+    powers = (e.args for e in expression.atoms(Pow) if p in e.free_symbols)
+    whole = all(exponent.is_Integer and exponent >= 0 for _, exponent in powers)
+    return not whole or any(p in e.free_symbols for e in expression.atoms(log))
 
 
 def source(closure: Closure) -> str:
@@ -81,6 +88,7 @@ def source(closure: Closure) -> str:
         ],
         FIELDS=tuple(tuple(map(str, f)) if isinstance(f, tuple) else str(f) for f in closure.fields),
         EVOLVES=closure.evolves,
+        NEEDS_PRESSURE=any(needs_pressure(e) for table in tables.values() for e in table.values()),
         BOUNDED=tuple(n for n in ("FLUX", "SUPPLY") if any(m in e.free_symbols for e in tables[n].values())),
         **constants,
     )

@@ -16,6 +16,9 @@ from stability.timestepper.mesh import Mesh, hopper_mesh
 from stability.timestepper.problem import Problem
 from stability.timestepper.volumes import control_volumes
 
+# Of g r_0: what closures such as mu(I), whose stress has a root or a quotient of p, see on the arcs, where p = 0.
+LEAST_PRESSURE = 1e-4
+
 
 def hopper_problem(
     closure: Any, flow: Any, parameters: Mapping[str, float], mesh: Mesh | Mapping[str, Any], floor: float = 0.05
@@ -33,6 +36,7 @@ def hopper_problem(
     Notes
     -----
     Walls slide under Coulomb friction (I6), the arcs carry no stress. On the half wedge the axis is a line of symmetry.
+    A closure whose stress exists for p > 0 only sees at least `LEAST_PRESSURE`.
     """
     model = Model(closure, flow)
     middle = {"r": (parameters["outlet_radius"] + parameters["inlet_radius"]) / 2, "theta": 0.0}
@@ -41,9 +45,9 @@ def hopper_problem(
     if not isinstance(mesh, Mesh):
         geometry = (si["outlet_radius"], si["inlet_radius"], si["wedge_angle"])
         mesh = hopper_mesh(*geometry, **mesh)
-    law = Law(closure, si, body_force=(-si["gravity"], 0.0), floor=floor)
-    initial = radial_state(flow, si, mesh)
     speed = np.sqrt(si["gravity"] * si["outlet_radius"])
+    law = Law(closure, si, (-si["gravity"], 0.0), floor, LEAST_PRESSURE * speed**2)
+    initial = radial_state(flow, si, mesh)
     return Problem(
         mesh=mesh,
         law=law,

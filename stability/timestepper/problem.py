@@ -114,7 +114,7 @@ class Problem:
     @cached_property
     def _loops(self) -> Loops | None:
         wanted = pays(len(self.mesh.elements)) if self.compiled is None else self.compiled
-        return Loops.of(self) if wanted else None
+        return Loops.of(self) if wanted and not self.law.bounds_pressure else None  # the loops know no least pressure
 
     def _corner(self, q: np.ndarray) -> np.ndarray:
         return np.take(q.T, self.mesh.elements.T, axis=1)  # (3, 4, elements), that order in memory too

@@ -192,3 +192,36 @@ def test_rigid_plastic_flow_runs(kind):
     rows = [row for _, row in steps(problem, start(problem, control), control, [0.01], solver_named("direct", problem))]
     assert len(rows) >= 10 and rows[-1].time == 0.01
     assert max(row.mass_budget for row in rows) < 1e-14  # (I7.1), without epsilon: roundings
+
+
+RHEOLOGIES = {
+    "perturbed": {"epsilon": 1e-3},
+    "deviatoric": {"epsilon": 1e-3},
+    "rigid_plastic": {},
+    "viscous": {"kinematic_viscosity": 0.05},
+    "mu_i": {
+        "static_friction": 0.38,
+        "dynamic_friction": 0.64,
+        "reference_inertial_number": 0.279,
+        "grain_diameter": 1e-3,
+        "solid_fraction": 0.6,
+    },
+}
+
+
+@pytest.mark.parametrize("closure", RHEOLOGIES)
+def test_closures_of_velocity_and_pressure_are_marched_by_name(closure):
+    problem = hopper_problem(closure, "radial_hopper", HOPPER | RHEOLOGIES[closure], {"elements": 100})
+    state = last(problem, 2e-3, Control(first=1e-5, largest=5e-4))
+    assert np.all(np.isfinite(state.q)) and abs(state.q - problem.initial).max() > 1e-3
+
+
+def test_the_jacobian_is_exact_where_mu_i_sees_the_least_pressure():
+    problem = hopper_problem("mu_i", "radial_hopper", HOPPER | RHEOLOGIES["mu_i"], {"elements": 60}, floor=3.0)
+    q = problem.initial + np.random.default_rng(0).normal(0, 0.3, problem.initial.shape)
+    assert problem.law.bounds_pressure and (q[:, 2] < 0).any()
+    direction = np.random.default_rng(1).normal(size=q.shape)
+    found = problem.matrix(q, 3.0) @ direction.ravel()
+    step = q + 1e-30j * direction
+    exact = problem.equations(step, 3.0 * step, 0.0).imag.ravel() / 1e-30
+    assert_allclose(found, exact, atol=1e-13 * abs(exact).max())  # roundings of some 100 terms a row
