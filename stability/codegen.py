@@ -117,6 +117,7 @@ def derived(entry: Any, what: str) -> str:
         return generate(entry, what)
     except StabilityError:
         raise
+    # A user's own expressions, the only ones that come here, fail in SymPy in any of these ways; the cause is chained.
     except (ArithmeticError, AttributeError, LookupError, NotImplementedError, TypeError, ValueError) as error:
         raise SceneError(f"{entry.name} cannot be derived: {unfit(entry, error)}") from error
 
