@@ -9,9 +9,9 @@ from derivations.verdict import Kind, Verdict, show
 from stability.closures.drucker_prager import LETTERS, RIGID_PLASTIC, stress
 from stability.closures.plane_flow import V, grad_u, velocity
 from stability.flows.radial_hopper import RADIAL_HOPPER, varphi_w
-from stability.linearise import along, imbalance, pencil
+from stability.linearise import along, imbalance
 from stability.symbols import body_force, gradient, k, mu, norm_V, p, symbol, u, v, varphi
-from stability.tangent import WAVE, blocks, uniform
+from stability.tangent import WAVE, blocks, truncated
 
 TITLE = "Equations of rigid-plastic flow (section 2)"
 sigma, rho, speed = symbol("sigma"), symbol("rho"), symbol("U")
@@ -135,9 +135,7 @@ def wall_friction() -> Verdict:
 
 def hyperbolic() -> Verdict:
     """Return the verdict on "strictly hyperbolic in the case of plane strain"."""
-    series = {
-        n: m.applyfunc(lambda e: uniform(RIGID_PLASTIC, e)) for n, m in pencil(RIGID_PLASTIC).series(WAVE).items()
-    }
+    series = truncated(RIGID_PLASTIC).series(WAVE)
     C, B, row = blocks(RIGID_PLASTIC, series[2])[0], *blocks(RIGID_PLASTIC, series[1])[1:3]
     # The principal symbol of the quasi-static equations.
     steady = Matrix.vstack(Matrix.hstack(C, B), Matrix.hstack(row, Matrix([[0]]))).det()

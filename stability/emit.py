@@ -9,6 +9,8 @@ from sympy.printing.str import StrPrinter
 
 from stability import records
 from stability.closures.base import Closure
+from stability.closures.checks import ELEMENTARY, KNOWN
+from stability.errors import SceneError
 from stability.flows.base import Flow
 from stability.linearise import Pencil, imbalance, letter_gradients, letters, pencil
 from stability.parameters import Parameter
@@ -16,7 +18,7 @@ from stability.structure import galilean, modes
 from stability.symbols import body_force, gradient, hessian
 from stability.tangent import MATRICES, NoClosedFormError, Pair, Single, reduced_form, truncated
 
-FUNCTIONS = "sqrt sin cos tan asin atan exp log pi rational"
+FUNCTIONS = " ".join(("sqrt", *(f.__name__ for f in ELEMENTARY), "pi", "rational"))
 
 
 class Printer(StrPrinter):
@@ -25,6 +27,14 @@ class Printer(StrPrinter):
     def _print_Rational(self, e: Any) -> str:
         # A denominator 2^n is exact in every arithmetic; any other quotient must be formed in the arithmetic itself.
         return repr(int(e.p) / int(e.q)) if e.q & (e.q - 1) == 0 and abs(e.p) < 2**53 else f"rational({e.p}, {e.q})"
+
+    def _print_Exp1(self, e: Any) -> str:
+        return "exp(1)"
+
+    def _print_Function(self, e: Any) -> str:
+        if not isinstance(e, ELEMENTARY):  # a flow's own, or one that SymPy made of a closure's: `checks` saw neither
+            raise SceneError(f"{e} cannot be computed: {KNOWN}")
+        return super()._print_Function(e)
 
     def _print_Pow(self, e: Any, rational: bool = False) -> str:
         base, exponent = e.as_base_exp()

@@ -30,8 +30,14 @@ class Parameter:
     source: str
 
     def __post_init__(self) -> None:
+        for name in ("word", "symbol", "unit", "meaning", "source"):
+            if not isinstance(value := getattr(self, name), str):
+                raise SceneError(
+                    f"parameter {self.word}: {name} must be text, got {value!r} (of type "
+                    f"{type(value).__name__}): a Parameter is (word, symbol, unit, low, high, meaning, source)"
+                )
         if not (isinstance(self.low, int | float) and isinstance(self.high, int | float) and self.low < self.high):
-            raise ValueError(
+            raise SceneError(
                 f"parameter {self.word} has no range: low and high must be numbers and low < high, "
                 f"got {self.low!r} and {self.high!r}"
             )

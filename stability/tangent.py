@@ -8,8 +8,13 @@ Numbers are not computed from those 2 x 2 entries. `Pair` and `Single` hold what
 s = i|xi|, for a wave along the x axis of its own frame (chi, tau): closures are frame-indifferent, so the base state is
 turned instead. There A = [[a, b], [b, d]], and identities such as A:A = 1 are applied *before* two terms can cancel in
 floating point: Det M comes out as mu^2 d^2/2 |xi|^4 and not as a difference.
+
+D' and M freeze the moduli: they take dF/dq, dF/dg, dS/dq and dS/dg as they are at the point, pressure and strain rate
+included, and leave out how these vary along the base state, and inertia. What is left of D for the paper's closure is
+(P7). M is its part of second order in the wavenumber.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
@@ -19,16 +24,16 @@ from sympy import factor as factored
 from stability.closures.base import Closure
 from stability.errors import SceneError
 from stability.flows.base import Flow
-from stability.linearise import Pencil, letter_gradients, letters, pencil, state_letters
+from stability.linearise import Pencil, letter_gradients, letters, moduli, pencil
 from stability.structure import frame_indifferent, galilean
 from stability.symbols import gradient
 
-MATRICES = ("full", "truncated", "leading")  # D, D', M
 WAVE = (1, 0)  # the direction of the wave in its own frame
 Series = dict[int, Expr]  # {n: coefficient of s^n}, s = i|xi|
+ZERO: Series = {0: Integer(0)}
 
 
-class NoClosedFormError(ValueError):
+class NoClosedFormError(SceneError):
     """A closure whose eigenvalues are those of its pencil and of nothing shorter."""
 
 
@@ -57,21 +62,43 @@ def blocks(closure: Closure, matrix: Matrix) -> tuple[Matrix, Matrix, Matrix, Ma
     return matrix[e, e], matrix[e, c], matrix[c, e], matrix[c, c]
 
 
-def uniform(closure: Closure, expression: Expr) -> Expr:
-    """Return the expression without inertia and without gradients of the base state, as (P7) has it."""
-    gone = {s for c in closure.q for s in (c, *gradient(c))}
-    gone |= {s for letter in state_letters(closure) for s in gradient(letter)}
-    return expression.subs(dict.fromkeys(gone, 0))
+def depends_on(matrices: tuple, components: tuple, named: dict) -> bool:
+    """Return whether an entry of some matrix, or a letter in one, holds a component."""
+    found = set().union(*(m.free_symbols for m in matrices))
+    for letter, definition in reversed(named.items()):
+        found |= definition.free_symbols if letter in found else set()
+    return not found.isdisjoint(components)
 
 
+@cache
 def truncated(closure: Closure) -> Pencil:
-    """Return the pencil whose reduction is D' (P7): without inertia and gradients of the base state."""
-    P = pencil(closure)
+    """Return the pencil whose reduction is D' (P7): moduli frozen, without inertia."""
+    m, n = moduli(closure), len(closure.q)
+    velocity = next((f for f in closure.fields if isinstance(f, tuple)), ())
+    rows = [closure.q.index(c) for c in velocity]
+    Sq, Sg = zeros(n, n), (zeros(n, n), zeros(n, n))  # those of inertia, S = -(u.grad) u
+    for i in rows:
+        for b, j in enumerate(rows):
+            Sq[i, j], Sg[b][i, i] = -gradient(closure.q[i])[b], -velocity[b]
+    for part in (0, 1):  # a closure without inertia (slow flow) has nothing to lose
+        first = tuple(ImmutableMatrix(m.Sg[b] - part * Sg[b] - m.Fq[b]) for b in (0, 1))
+        found = Pencil(pencil(closure).E, pencil(closure).L2, first, ImmutableMatrix(m.Sq - part * Sq))
+        if not depends_on((*first, found.L0, *(L for row in found.L2 for L in row)), velocity, m.letters):
+            return found
+    raise NoClosedFormError(
+        f"closure {closure.name} has no D': the velocity enters it by more than inertia, (u.grad) u"
+    )
 
-    def change(m: ImmutableMatrix) -> ImmutableMatrix:
-        return m.applyfunc(lambda e: uniform(closure, e))
 
-    return Pencil(P.E, tuple(tuple(map(change, row)) for row in P.L2), tuple(map(change, P.L1)), change(P.L0))
+def leading(closure: Closure) -> Pencil:
+    """Return the pencil of which M (P4) is made: the highest order of each block of D'."""
+    P = truncated(closure)
+    mixed = ImmutableMatrix(*P.E.shape, lambda i, j: int(closure.evolves[i] != closure.evolves[j]))
+    return Pencil(P.E, P.L2, tuple(L.multiply_elementwise(mixed) for L in P.L1), 0 * P.L0)
+
+
+PENCILS: dict[str, Callable[[Closure], Pencil]] = {"full": pencil, "truncated": truncated, "leading": leading}
+MATRICES = tuple(PENCILS)  # D, D', M
 
 
 def tangent(closure: Closure, xi: tuple, matrix: str = "full") -> ImmutableMatrix:
@@ -85,9 +112,7 @@ def tangent(closure: Closure, xi: tuple, matrix: str = "full") -> ImmutableMatri
             f"closure {closure.name} has no matrix of that kind: D is derived for one constraint or none, "
             "D' and M for two velocities and one constraint; its pencil is that of stability.linearise"
         )
-    L = pencil(closure).L(xi)
-    if matrix != "full":
-        L = L.applyfunc(lambda e: uniform(closure, e))
+    L = PENCILS[matrix](closure).L(xi)
     if not constraints:
         return L
     C, B, row, corner = blocks(closure, L)
@@ -132,17 +157,13 @@ def entry(series: dict[int, Matrix], i: int, j: int) -> Series:
 
 def frame_series(closure: Closure, matrix: str) -> dict[int, Matrix]:
     """Return the series of L for a wave along x in its own frame, the Doppler shift -i u.xi left out."""
-    series = pencil(closure).series(WAVE)
     hidden = any(set(closure.q[:2]) & definition.free_symbols for definition in letters(closure).values())
     if hidden or not galilean(closure):
         raise NoClosedFormError(
             f"closure {closure.name} is not Galilean invariant: -i u.xi does not merely shift the frequency"
         )
     rest = dict.fromkeys(closure.q[:2], 0)
-    series = {n: m.subs(rest) for n, m in series.items()}
-    if matrix == "full":
-        return series
-    return {n: m.applyfunc(lambda e: uniform(closure, e)) for n, m in series.items()}
+    return {n: m.subs(rest) for n, m in PENCILS[matrix](closure).series(WAVE).items()}
 
 
 @cache
@@ -192,10 +213,7 @@ def in_powers(closure: Closure, matrix: str = "full", direction: tuple = WAVE) -
 
     Only where the constraint sees its unknown; the projection (L3.1) is a quotient of series, see `Single`.
     """
-    series = pencil(closure).series(direction)
-    if matrix != "full":
-        series = {n: m.applyfunc(lambda e: uniform(closure, e)) for n, m in series.items()}
-    return eliminated(closure, series, matrix)
+    return eliminated(closure, PENCILS[matrix](closure).series(direction), matrix)
 
 
 def parity(series: Series, odd: int) -> Series:
@@ -218,9 +236,9 @@ def pair(D: dict[int, Matrix], reduced) -> Pair:
     determinant[0] = {n: reduced(c) for n, c in determinant[0].items()}
     half_gap = combined((Rational(1, 2), D11), (-Rational(1, 2), D22))
     return Pair(
-        trace=combined((1, D11), (1, D22)),
-        determinant=combined(*((1, part) for part in determinant)),
-        discriminant=combined((1, product(half_gap, half_gap)), (1, product(D12, D21))),
+        trace=combined((1, D11), (1, D22)) or ZERO,
+        determinant=combined(*((1, part) for part in determinant)) or ZERO,
+        discriminant=combined((1, product(half_gap, half_gap)), (1, product(D12, D21))) or ZERO,
     )
 
 
@@ -231,9 +249,11 @@ def single(C: dict[int, Matrix], B: dict[int, Matrix], reduced) -> Single:
     Tr D (L4) without the spurious zero eigenvalue.
     """
     B_c, B_t = entry(B, 0, 0), entry(B, 1, 0)
+    if 1 not in B_c:
+        raise NoClosedFormError("the unknown of the constraint must act by its gradient along the wave")
     limit = B_t.get(1, Integer(0)) / B_c[1]
     C_ct, C_tt = entry(C, 0, 1), entry(C, 1, 1)
     regular = combined((1, C_tt), (-limit, C_ct))
-    regular[2] = reduced(regular[2])
+    regular = {n: reduced(c) if n == 2 else c for n, c in regular.items()} or ZERO  # no viscosity, no inertia: none
     rest = combined((1, {0: B_t.get(0, Integer(0))}), (-limit, {0: B_c.get(0, Integer(0))}))
     return Single(regular=regular, numerator=product(rest, C_ct), denominator=B_c)

@@ -64,8 +64,6 @@ def entry(kind: str, word: str, folder: Path | None = None) -> Any:
     module, attribute = CLASSES[kind].split(":")
     wanted = getattr(import_module(module), attribute)
     if isinstance(found.get(name), wanted):
-        if set(getattr(found[name], "evolves", ())) - {0, 1}:
-            raise SceneError(f"{where}: evolves = {found[name].evolves} may hold 1 (evolution) and 0 (constraint) only")
         return found[name]
     there = [word for word, value in found.items() if isinstance(value, wanted) and not word.startswith("_")]
     known = f"{path.name} defines {', '.join(there)}" if there else f"{path.name} defines no {attribute}"

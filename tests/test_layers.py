@@ -15,6 +15,7 @@ LAYERS = [
     {"userfile"},
     {"parameters", "registry", "bounded", "fast", "puiseux", "forms", "progress"},
     {"symbols", "balls", "compiled", "layers", "general"},
+    {"closures.checks"},
     {"closures.base", "flows.base", "closures", "flows", "directions"},
     {"closures.plane_flow", "records"},
     {f"closures.{n}" for n in ("drucker_prager", "inertial_number", "dilatant_flow", "cosserat")}

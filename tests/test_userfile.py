@@ -192,6 +192,15 @@ FAULTS = {
                  r"Parameter is \(word, symbol, unit, low, high, meaning, source\)"),
     "range of words": ("0, 1e9", "'small', 'large'", r"line 9: parameter viscosity has no range: low and high must be"),
     "empty range": ("0, 1e9", "1, 1", r"line 9: parameter viscosity has no range: .* got 1 and 1$"),
+    "same symbol": ("ANGLE, VISCOSITY)", "ANGLE, VISCOSITY, Parameter('other', 'nu', '1', 0, 1, '', ''))",
+                    r"closure slow: the parameter viscosity and the parameter other share the symbol 'nu': choose "),
+    "pressure's symbol": ('"nu", "m2/s"', '"p", "m2/s"',
+                          r"the field p and the parameter viscosity share the symbol 'p': choose another"),
+    "plain symbol": ('symbol("nu")', '__import__("sympy").Symbol("nu")', r"make it by stability.symbols.symbol\("),
+    "hyperbolic": ("sin(varphi)", "__import__('sympy').tanh(varphi)", r"holds tanh\(varphi\).*: write it by exp, as "),
+    "no record": ("(FRICTION_ANGLE, VISCOSITY)", "('friction_angle',)",
+                  r"parameters holds friction_angle \(of type str\): give Parameter\(word, "),
+    "name": ('name="slow"', "name=3", r"my_file.py line 1[12]: closure: name must be text that is not empty, got 3 "),
     "syntax": ("VISCOSITY = ", "VISCOSITY = = ", r"my_file.py line 9: this is not Python: invalid syntax$"),
     "error": ("sqrt(2)", "square_root(2)", r"my_file.py line 10: NameError: name 'square_root' is not defined$"),
     "no such name": ("SLOW =", "FAST =", r"my_file.py has no SLOW \(my_file.py defines FAST\)$"),
@@ -206,6 +215,15 @@ def test_a_closure_that_is_not_self_consistent_is_refused_in_one_sentence(fault,
     assert old in TEN_LINES
     (folder / "my_file.py").write_text(TEN_LINES.replace(old, new, 1))
     assert re.search(said, refused("my_file.py:SLOW"))
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_the_command_tells_a_fault_without_a_traceback(fault, folder):
+    old, new, said = FAULTS[fault]
+    (folder / "my_file.py").write_text(TEN_LINES.replace(old, new, 1))
+    done = CliRunner().invoke(main, ["run", "scene.toml"])
+    assert done.exit_code == 2 and isinstance(done.exception, SystemExit)
+    assert re.search(said.removesuffix("$"), done.stderr) and "Traceback" not in done.output
 
 
 @pytest.mark.parametrize(

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from keyword import iskeyword
 
 from sympy import Expr, ImmutableMatrix, Matrix, Symbol, sqrt
 
 from stability import symbols
+from stability.closures.checks import problems
+from stability.errors import SceneError
 from stability.parameters import Parameter
 
 
@@ -50,28 +51,12 @@ class Closure:
     relations: tuple[tuple[Symbol, Expr], ...] = ()
 
     def __post_init__(self) -> None:
-        n = len(self.q)
-        if not (len(self.evolves) == n == len(self.supply) and self.flux.shape == (n, 2)):
-            raise ValueError(
-                f"closure {self.name}: {n} components of q need {n} entries of E and S and an {n} x 2 flux, "
-                f"got {len(self.evolves)}, {len(self.supply)} and {self.flux.shape}"
-            )
-        names = [*map(str, (*self.q, *self.g, *self.letters)), *(r.symbol for r in self.parameters)]
-        if bad := sorted(n for n in names if not n.isidentifier() or iskeyword(n)):
-            raise ValueError(f"closure {self.name}: {bad} cannot be names in generated code: choose other letters")
-        known = {
-            *self.q,
-            *self.g,
-            *self.letters,
-            *symbols.body_force,
-            *(symbols.symbol(r.symbol) for r in self.parameters),
-        }
-        used = set().union(*(e.free_symbols for e in (*self.flux, *self.supply, *self.letters.values())))
-        if undeclared := sorted(map(str, used - known)):
-            raise ValueError(
-                f"closure {self.name} uses undeclared symbols {undeclared}: "
-                "declare each as a parameter, a field or a letter"
-            )
+        if problem := next(problems(self), None):
+            raise SceneError(problem)
+        # As given they may be lists or may change later: what is derived is kept under this object's identity.
+        for name, kind in (("flux", ImmutableMatrix), ("supply", ImmutableMatrix), ("parameters", tuple)):
+            object.__setattr__(self, name, kind(getattr(self, name)))
+        object.__setattr__(self, "evolves", tuple(map(int, self.evolves)))
 
     @property
     def q(self) -> tuple[Symbol, ...]:

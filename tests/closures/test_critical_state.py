@@ -48,12 +48,23 @@ def test_waves_travel_instead_while_the_medium_compacts():
     found = waves.eigenvalues(mp.degrees(mp.acos(f) / 2))
     frequency = mp.sqrt(mpf("0.5") * mpf("3.75") * mpf("1.2") ** 2 * -f)
     assert sorted(float(z.imag / SHORT) for z in found[:2]) == pytest.approx([-frequency, frequency], rel=1e-15)
+    # a bounded rate, here -0.97 1/s at every wavenumber from 1e17 to 1e24 (computed): 1e-19 of the frequency
     assert abs(found[0].real) < 10
 
 
 def test_the_null_direction_is_that_of_the_perturbed_system():
-    # cos 2phi = delta/sqrt(2 - delta^2) (perturbed, from the extension axis) and = f here, as delta = f sqrt(2/(1 +
-    # f^2))
+    # M of the perturbed system has one direction without decay; at the same delta critical-state flow grows with q
+    # there and nowhere else.
     f = mpf("0.2")
     delta = f * mp.sqrt(2 / (1 + f**2))
-    assert abs(delta / mp.sqrt(2 - delta**2) - f) < mpf(10) ** -50
+    given = {"friction_angle": "34", "epsilon": "1e-3", "pressure": "1", "strain_rate": "1", "delta": delta}
+    perturbed = Waves("perturbed", "uniform_strain", given)
+    critical = Waves("critical_state", "uniform_fraction", state(DILATING, f))
+    null, decay = perturbed.worst()
+    assert (
+        abs(decay) < mpf(10) ** -30
+    )  # at q = 1e20 the bounded rate that is left is 1e-40 q^2, the angle errs by 1e-16
+    assert max(perturbed.growth(null + 1), perturbed.growth(null - 1)) < -1e-4
+    # exact: the peak is q^-1/2 = 1e-10 wide, so that an angle within 1e-16 changes it by 1e-12
+    assert abs(critical.growth(null, 1) / mp.sqrt(mpf("0.6") * 2 * f) - 1) < 1e-12
+    assert max(critical.growth(null + 1, 1), critical.growth(null - 1, 1)) < mpf(10) ** -15

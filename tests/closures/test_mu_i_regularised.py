@@ -1,7 +1,7 @@
 """The partially regularised mu(I) against Barker & Gray, J. Fluid Mech. 828, 2017, and where their condition misses."""
 
 import pytest
-from mpmath import findroot, mp, mpf
+from mpmath import mp, mpf
 
 from tests.closures.benchmarks import GLASS
 from tests.closures.evaluate import Waves
@@ -23,12 +23,6 @@ def high(I) -> tuple[mpf, mpf]:
     return top / bottom, I * ((mu_2 + 2 * mu_inf * I) / top - 1 / bottom)
 
 
-def printed(I) -> mpf:
-    """Return the printed condition, well-posed where it is not positive."""
-    mu, nu = high(I)
-    return 4 * nu**2 - 4 * nu + mu**2 * (1 - nu / 2) ** 2
-
-
 def slope(I) -> mpf:
     """Return d(mu p)/dp = mu (1 - nu/2)."""
     mu, nu = high(I)
@@ -47,9 +41,32 @@ def test_both_branches_meet_with_one_friction():
     assert abs(low.growth(0) / high_.growth(0) - 1) < 1e-15
 
 
+def bracket(I) -> tuple[mpf, mpf]:
+    """Return nu and K of ``-(eta/2) [nu - K c + (1 - nu) c^2]/(1 - K c)``, read off the waves at c = -1, 0, 1/2."""
+    found = waves(I)
+    whole, level, half = (found.growth(angle) for angle in (90, 45, 30))  # the bracket over 1 - K c is 1 along c = -1
+    nu, part = level / whole, half / whole
+    return nu, 2 * (nu + (1 - nu) / 4 - part) / (1 - part)
+
+
+def discriminant(I) -> mpf:
+    """Return that of the bracket, the printed condition where K is mu (1 - nu/2)."""
+    nu, K = bracket(I)
+    return K**2 - 4 * nu * (1 - nu)
+
+
+@pytest.mark.parametrize("I", ["0.1", "1", PRINTED_FAILS, TRULY_FAILS, "100"])
+def test_the_waves_of_the_closure_have_the_stated_law(I):
+    nu, K = bracket(I)
+    # exact; at q = 1e20 what is left out is 1e-20 of the leading term, and differences of it are some 1e-2
+    assert abs(nu - high(mpf(I))[1]) < 1e-17 and abs(K - slope(mpf(I))) < 1e-17
+
+
 def test_the_printed_condition_fails_where_it_says():
-    assert abs(findroot(printed, mpf("16.99")) / mpf(PRINTED_FAILS) - 1) < 1e-14
-    assert abs(findroot(lambda I: slope(I) - 1, mpf("17.9")) / mpf(TRULY_FAILS) - 1) < 1e-14
+    # computed: 15 digits of the roots, so that the signs change within 1e-14
+    for stated, condition in ((PRINTED_FAILS, discriminant), (TRULY_FAILS, lambda I: bracket(I)[1] - 1)):
+        below, above = (condition(mpf(stated) * (1 + side * mpf(10) ** -14)) for side in (-1, 1))
+        assert below < 0 < above
 
 
 @pytest.mark.parametrize("I", ["1", PRINTED_FAILS, "17.5", "17.90666004269"])
@@ -60,11 +77,11 @@ def test_every_direction_is_stable_until_the_slope_of_mu_p_is_one(I):
         assert found.growth(angle) < 0
 
 
-def test_the_roots_that_the_printed_condition_counts_are_no_directions():
-    for I in ("17", "17.5", "17.9"):
-        mu, nu = high(mpf(I))
-        assert printed(mpf(I)) > 0
-        assert (slope(mpf(I)) - mp.sqrt(printed(mpf(I)))) / (2 * (1 - nu)) > 1  # the smaller root, in c = cos 2phi
+@pytest.mark.parametrize("I", ["17", "17.5", "17.9"])
+def test_the_roots_that_the_printed_condition_counts_are_no_directions(I):
+    nu, K = bracket(I)
+    assert discriminant(I) > 0
+    assert (K - mp.sqrt(discriminant(I))) / (2 * (1 - nu)) > 1  # the smaller root, in c = cos 2phi
 
 
 @pytest.mark.parametrize("factor", ["1.000000000001", "1.01", "2"])
