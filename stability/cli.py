@@ -55,6 +55,7 @@ class Told(logging.Handler):
         click.echo(f"stability: {record.getMessage()}", err=True)
 
 
+FIELDS = {"closure": "needs the fields", "flow": "provides the fields"}
 SETTINGS = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 
 
@@ -112,8 +113,8 @@ def export(result: Path, folder: Path, scene: Path | None) -> None:
 
     try:
         ds = results.open_results(result)
-    except (OSError, TypeError, ValueError) as error:
-        raise SceneError(f"{result} cannot be read as a result: {getattr(error, 'strerror', None) or error}") from None
+    except OSError as error:
+        raise SceneError(f"{result} cannot be read as a result: {error.strerror}") from None
     kind = ds.attrs.get("request")
     if kind not in ("march", "field_map"):
         raise SceneError(f"{result} is not the result of a march or a field_map: only these have fields to export")
@@ -141,7 +142,13 @@ def field_of(ds: Any, beside: Path) -> Any:
     from stability.estimates import field_in
     from stability.scene.requests import FieldMap
 
-    return field_in(FieldMap.model_validate(tomllib.loads(ds.attrs["scene_text"])["request"]), beside.parent)
+    ask = FieldMap.model_validate(tomllib.loads(ds.attrs["scene_text"])["request"])
+    if not (beside.parent / ask.file).is_file():
+        raise SceneError(
+            f"the field of this map is in {ask.file}, and there is no {beside.parent / ask.file}: "
+            "name the scene of the map, as in --scene scenes/map.toml"
+        )
+    return field_in(ask, beside.parent)
 
 
 def finish(task: Callable[[], Any], output: Path, quiet: bool, kept: Path | None = None) -> None:
@@ -231,6 +238,8 @@ def listing(registry: Any) -> Iterator[str]:
         yield f"  {module['TITLE']} [{module['SOURCE']}]"
         if axis := module.get("AXIS"):
             yield f"  wave_angle is measured from {axis}"
+        fields = ", ".join(n for f in module["FIELDS"] for n in (f if isinstance(f, tuple) else (f,)))
+        yield f"  {FIELDS[registry.kind]} {fields}"
         for *cells, record in table:
             columns = "  ".join(f"{cell:<{width}}" for cell, width in zip(cells, widths, strict=True))
             yield f"    {columns}  {record.meaning} ({record.source})"

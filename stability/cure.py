@@ -1,82 +1,41 @@
-"""The least value of a regularising parameter that cures a point of a flow, between two values that were evaluated."""
+"""The least value of a regularising parameter that cures a point of a flow, and from where to where values cure.
+
+Stage 1  a scan over the bracket, in float64: which values cure; nothing is taken for granted between or beyond them
+Stage 2  bisection at both ends of the lowest run of values that do, in float64
+Stage 3  without a bound on growth, both ends again in ball arithmetic; with one, a proof that the failing values fail
+"""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from math import inf, isfinite, sqrt
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import partial
+from math import isfinite, nan, pi, sqrt
+from typing import Any, NoReturn
 
-import numpy as np
-
-from stability.api import eigenvalues
+from stability import codegen
+from stability.bracketing import apart, halved, scanned
+from stability.closures import CLOSURES
+from stability.cured import Cure
 from stability.errors import SceneError
-from stability.field.guides import guide
-from stability.field.judging import short_waves
-from stability.field.search import fastest
-from stability.field.waves import waves_of
-from stability.judge import well_posedness
-from stability.model import Base, Model
-from stability.verdict import Kind
+from stability.model import Model
+from stability.opened import Point, decays, endless, exceeds, fastest_of, largest, stable, strain_rate
+from stability.parameters import bracketed, meant
 
-SCAN = 61  # values tried between the ends of the bracket, for the first one from which all larger ones cure
-RANGE = (1e-15, 1e15)  # of an open range without a bound
-CERTIFY_RTOL = 1e-9  # of the one eigenvalue that shows growth at the lower end
-UNKNOWN = (float("nan"), float("nan"), float("nan"))
-SHORTEST, LONGEST = 30.0, 1e-3  # times the scale of the pencil: between them the fastest wave is looked for
+KINEMATICS = "What still grows does so no faster than ||V||: the kinematics of the longest waves."
+ENDLESS = "The longest waves grow fastest: no width is singled out, and about a frozen base state they mean little."
+SEARCHED = "That values cure is a search over all waves in float64, not a proof."
+JUDGED = "Of the other values tried, float64 judged those that are clear."
 
 
 @dataclass(frozen=True)
-class Cure:
-    """A regularising parameter at the edge of what cures.
+class Run:
+    """The lowest run of values that cure: its ends, and the neighbours that do not; None where the bracket ends."""
 
-    Attributes
-    ----------
-    parameter, unit : which one
-    below, above : it does not cure at ``below`` and does at ``above``; they differ by ``rtol`` at most
-    growth_below, growth_above : largest growth rates there, 1/s; inf where short waves grow without bound
-    wavenumber, wave_angle, band_width : the fastest wave at ``above``, 1/m and degrees, and its length in m; None where
-        no wave was found to grow
-    certified : (below, above): which end was decided in ball arithmetic
-    notes : what the rest rests on
-    """
-
-    parameter: str
-    unit: str
-    below: float
+    tried: tuple[float, float, int]
+    below: float | None
     above: float
-    growth_below: float
-    growth_above: float
-    wavenumber: float | None
-    wave_angle: float | None
-    band_width: float | None
-    certified: tuple[bool, bool]
-    notes: tuple[str, ...]
-
-    def __str__(self) -> str:
-        """Return the cure as sentences."""
-        text = f"{self.parameter} >= {self.above:.10g} {self.unit} cures, {self.below:.10g} does not"
-        if self.band_width is not None:
-            text += f"; bands of {self.band_width:.4g} m remain, growing at {self.growth_above:.4g} 1/s"
-        ends = " and ".join(w for w, on in zip(("lower", "upper"), self.certified, strict=True) if on)
-        return f"{text}. Certified: {f'the {ends} end' if ends else 'neither end'}. {' '.join(self.notes)}".rstrip()
-
-
-@dataclass(frozen=True)
-class Point:
-    """The point of a flow with one parameter open."""
-
-    closure: Any
-    flow: Any
-    parameters: Mapping
-    point: Mapping
-    parameter: str
-
-    def given(self, value: float) -> dict:
-        """Return all parameters."""
-        return {**self.parameters, self.parameter: value}
-
-    def base(self, value: float) -> Base:
-        """Return the base state."""
-        return Model(self.closure, self.flow).base(self.given(value), self.point)
+    last: float
+    beyond: float | None
+    again: tuple[tuple[float, float], ...]
 
 
 def smallest_cure(
@@ -88,152 +47,136 @@ def smallest_cure(
     growth: float = 0.0,
     rtol: float = 1e-6,
     bracket: tuple[float, float] | None = None,
+    longest: float | None = None,
 ) -> Cure:
-    """Return the least value of a parameter that makes a point stable to short waves, or bounds the growth of all.
+    """Return the least value of a parameter found to make a point stable to short waves, or to bound the growth of all.
 
     Parameters
     ----------
     closure, flow, parameters, point : as in `stability.well_posedness`; ``parameters`` without the open one
-    parameter : word of the closure's parameter that regularises: ``epsilon``, ``kinematic_viscosity``,
-        ``hyperviscosity``, ...
+    parameter : word of the parameter that regularises: ``epsilon``, ``kinematic_viscosity``, ...; a part of it will do
+        where one parameter of the closure alone has it in its name, as ``viscosity``
     growth : 1/s. 0: no short wave may grow, which ball arithmetic decides. More: no wave of any length may grow faster
-    rtol : how close the two ends of the answer are, relative
-    bracket : values between which to look; None: the parameter's range
+    rtol : how close two neighbours are of which one cures and the other does not, relative
+    bracket : positive values between which to look; None: the parameter's range, from 1e-15 to 1e15 where it is open
+    longest : m, of the waves that are looked at: about a frozen base state, waves longer than the flow mean nothing.
+        None: the distance over which the pressure (or another scalar field) changes by itself, p/|grad p|; in a uniform
+        flow a thousand times the length at which the terms of the waves' equations balance
 
     Returns
     -------
-    `Cure`. With ``growth`` 0 both ends are certified where the verdict is. Else the lower end is: one wave that grows
-    faster, enclosed in balls; the upper end is a search over all waves, which is not a proof.
+    `Cure`: the lowest run of curing values among those of a scan over the bracket, with both of its ends. A parameter
+    may cure up to some value only, or between two; nothing is said about values between those tried, nor outside the
+    bracket. With ``growth`` 0 the ends are certified where the verdicts there are. Else it is certified that the
+    neighbours beyond the ends do not cure, by one wave that grows faster, enclosed in balls; that the ends do is a
+    search over all waves, which is not a proof.
 
     Raises
     ------
-    SceneError : no such parameter, no value that cures, or every value cures
+    SceneError : no such parameter, or no value tried that cures
     """
     model = Model(closure, flow)
-    record = model.parameters.get(parameter)
-    if record is None:
-        raise SceneError(f"parameter {parameter} is unknown here; known are {', '.join(sorted(model.parameters))}")
+    own = [r.word for r in codegen.load(CLOSURES, closure, codegen.RECORDS)["PARAMETERS"]]
+    record = model.parameters[meant(parameter, model.parameters, own)]
     if not (isfinite(growth) and growth >= 0):
         raise SceneError(f"growth = {growth!r} 1/s lies outside [0, inf) 1/s")
     if not 1e-14 <= rtol < 1:
         raise SceneError(f"rtol = {rtol!r} lies outside [1e-14, 1): float64 holds no more digits")
-    if bracket is None:
-        bracket = max(record.low, RANGE[0]), min(record.high, RANGE[1]) * (1 - 1e-12)
-    if not 0 < bracket[0] < bracket[1]:
-        raise SceneError(f"bracket = {bracket!r}: give two increasing positive numbers")
-    at = Point(closure, flow, parameters, point, parameter)
-    at.base(sqrt(bracket[0] * bracket[1]))  # everything that is wrong with the question is said here
+    low, high = bracketed(record, bracket)
+    if longest is not None and not (isfinite(longest) and longest > 0):
+        raise SceneError(f"longest = {longest!r} m lies outside (0, inf) m")
+    at = Point(closure, flow, parameters, point, record.word, longest)
+    at.base(sqrt(low) * sqrt(high))  # everything that is wrong with the question is said here
 
-    def cures(value: float) -> bool:
-        return largest(at, value, growth > 0)[0] <= growth
-
-    low, high = edge(cures, *bracket, record.described, growth)
-    if low:
-        low, high = halved(cures, low, high, rtol)
-    if growth == 0:
-        return decided(at, low, high, rtol, record.unit)
-    below, above = largest(at, low, True) if low else UNKNOWN, largest(at, high, True)
-    proved = bool(low) and proves(at, low, below, growth)
-    note = "The upper end is a search over all waves in float64, not a proof."
-    q = above[1] if above[0] > 0 else None
-    return Cure(parameter, record.unit, low, high, below[0], above[0], q, above[2] if q else None,
-                2 * np.pi / q if q else None, (proved, False), (note,))  # fmt: skip
+    about = (record.word, record.unit, float(growth))
+    if growth:
+        found = first_run(lambda value: bool(largest(at, value, growth)[0] <= growth), low, high, rtol)
+        return bounded(at, found, about) if found else refused(at, record.described, about, low, high)
+    strict, note = partial(stable, at), JUDGED
+    found = first_run(partial(decays, at), low, high, rtol)
+    found = found and ended(found, strict, rtol)
+    if found is None:  # what float64 saw is wrong, or nothing cures: balls alone
+        found, note = first_run(strict, low, high, rtol), "All values tried were decided in balls."
+    return decided(at, found, about, note) if found else refused(at, record.described, about, low, high)
 
 
-def largest(at: Point, value: float, every: bool) -> tuple[float, float, float]:
-    """Return growth rate (inf: without bound), wavenumber and angle of the fastest wave; of short ones unless every."""
-    base = at.base(value)
-    waves, hint = waves_of(base, 1), guide(base, 1)
-    short = short_waves(base, waves, hint)
-    if short.code[0] == 4:
-        return inf, inf, float(np.rad2deg(short.angle[0]))
-    law = float(np.nan_to_num(short.coefficient[0])) if short.exponent[0] == 0 else 0.0
-    if not every:
-        return (1.0 if short.code[0] == 3 else -1.0), inf, float(np.rad2deg(short.angle[0]))
-    scale = short.scale
-    best = fastest(waves, hint, LONGEST * scale, SHORTEST * scale)
-    if law > best.growth[0]:
-        return law, inf, float(np.rad2deg(short.angle[0]))
-    return float(best.growth[0]), float(best.wavenumber[0]), float(np.rad2deg(best.angle[0]))
+def first_run(cures: Callable[[float], bool], low: float, high: float, rtol: float) -> Run | None:
+    """Return the lowest run of values that cure, or None."""
+    values, runs = scanned(cures, low, high)
+    if not runs:
+        return None
+    (i, j), last = runs[0], len(values) - 1
+    above, below = halved(cures, values[i], values[i - 1], rtol) if i else (values[0], None)
+    end, beyond = halved(cures, values[j], values[j + 1], rtol) if j < last else (values[-1], None)
+    again = tuple((values[a], values[b]) for a, b in runs[1:])
+    return Run((values[0], values[-1], len(values)), below, above, end, beyond, again)
 
 
-def edge(cures: Callable, low: float, high: float, described: str, growth: float) -> tuple[float, float]:
-    """Return two neighbours of a scan, the last value that does not cure and the next one; 0 where all do."""
-    values = np.geomspace(low, high, SCAN)
-    cured = [cures(float(v)) for v in values]
-    if not cured[-1]:
-        what = "makes short waves decay" if growth == 0 else f"keeps the growth of every wave within {growth:g} 1/s"
-        raise SceneError(f"no value from {low:g} to {high:g} of {described} {what}")
-    failing = [i for i, on in enumerate(cured) if not on]
-    return (float(values[failing[-1]]), float(values[failing[-1] + 1])) if failing else (0.0, low)
+def ended(run: Run, cures: Callable[[float], bool], rtol: float) -> Run | None:
+    """Return a run with its ends as a stricter judge sees them, or None where that judge sees another run.
 
-
-def halved(cures: Callable, low: float, high: float, rtol: float) -> tuple[float, float]:
-    """Return the ends of the bracket after bisection in the logarithm."""
-    while high / low - 1 > rtol:
-        middle = sqrt(low) * sqrt(high)
-        if not low < middle < high:
-            break
-        low, high = (low, middle) if cures(middle) else (middle, high)
-    return low, high
-
-
-def decided(at: Point, low: float, high: float, rtol: float, unit: str) -> Cure:
-    """Return the cure of short waves with both ends decided by `well_posedness`, from a bracket found in float64.
-
-    Where float64 was wrong about an end, that end gives way by twice as much each time, and balls bisect.
+    Where the looser one was wrong about an end, that end gives way by twice as much each time, and bisection follows.
     """
-    notes = []
+    ends: list[tuple[float, float | None]] = []
+    for good, bad in ((run.above, run.below), (run.last, run.beyond)):
+        if bad is None:
+            if not cures(good):
+                return None
+            ends.append((good, None))
+            continue
+        found = apart(cures, good, bad, rtol)
+        if found is None:
+            return None
+        ends.append(halved(cures, *found, 2 * rtol))
+    (above, below), (last, beyond) = ends
+    return replace(run, below=below, above=above, last=last, beyond=beyond)
 
-    def verdict(value: float) -> Any:
-        return well_posedness(at.closure, at.flow, at.given(value), dict(at.point))
 
-    below, above = verdict(low) if low else None, verdict(high)
-    step = rtol
-    while below is not None and below.kind is Kind.STABLE:
-        low *= 1 - step
-        below, step = verdict(low), 2 * step
-        if step > 0.5:
-            raise SceneError(f"{at.parameter}: float64 and balls disagree about where short waves start to grow")
-    step = rtol
-    while above.kind is not Kind.STABLE:
-        high *= 1 + step
-        above, step = verdict(high), 2 * step
-        if step > 0.5:
-            raise SceneError(f"{at.parameter}: at {high:g} {unit} short waves are {above.kind}, in balls: no cure")
-    while below is not None and high / low - 1 > 2 * rtol:
-        middle = sqrt(low) * sqrt(high)
-        found = verdict(middle)
-        if found.kind is Kind.STABLE:
-            high, above = middle, found
-        else:
-            low, below = middle, found
-    if below is None:
-        notes.append(f"Every value from {high:g} {unit} on cures: short waves need some of it, not how much.")
-    finite = above.finite if above.finite and above.finite[0] > 0 else None
-    if finite and finite[0] <= strain_rate(at.base(high)):
-        notes.append("What still grows does so no faster than ||V||: the kinematics of the longest waves.")
-        finite = None
-    growth_below = UNKNOWN[0] if below is None else inf if below.kind is Kind.ILL_POSED else float(below.coefficient)
+def refused(at: Point, described: str, about: tuple[str, str, float], low: float, high: float) -> NoReturn:
+    """Raise the sentence that says that nothing tried cures."""
+    _, unit, growth = about
+    what = f"keeps the growth of every wave within {growth:g} 1/s" if growth else "makes short waves decay"
+    text = f"no value tried from {low:g} to {high:g} {unit} of {described} {what}"
+    rate = strain_rate(at.base(high))
+    if 0 < growth < rate:
+        text += f": the longest waves grow at up to ||V|| = {rate:.4g} 1/s by the kinematics alone; ask for more growth"
+    raise SceneError(text)
+
+
+def decided(at: Point, run: Run, about: tuple[str, str, float], note: str) -> Cure:
+    """Return the cure of short waves, its ends decided by `well_posedness`."""
+    ends = run.below, run.above, run.last, run.beyond
+    found = {value: at.verdict(value) for value in ends if value is not None}
+    proven = [value is not None and found[value].certified for value in ends]
+    grows = nan if run.below is None else fastest_of(found[run.below])
+    return answer(at, run, about, grows, (proven[0], proven[1]), (proven[2], proven[3]), note)
+
+
+def bounded(at: Point, run: Run, about: tuple[str, str, float]) -> Cure:
+    """Return the cure of all waves; that a value does not cure is certified where one wave's growth is enclosed."""
+    growth = about[2]
+    waves = [None if value is None else largest(at, value, growth) for value in (run.below, run.beyond)]
+    fails = [
+        value is not None and wave is not None and exceeds(at, value, wave, growth)
+        for value, wave in zip((run.below, run.beyond), waves, strict=True)
+    ]
+    grows = waves[0][0] if waves[0] else nan
+    return answer(at, run, about, grows, (fails[0], False), (False, fails[1]), SEARCHED)
+
+
+def answer(
+    at: Point, run: Run, about: tuple, grows: float, certified: tuple[bool, bool], upper: tuple[bool, bool], note: str
+) -> Cure:
+    """Return the cure with what still grows at its least value."""
+    wave = largest(at, run.above, about[2])
+    rate, wavenumber, angle = wave
+    long = rate > 0 and endless(at, run.above, wave)
+    why = KINEMATICS if rate <= strain_rate(at.base(run.above)) else ENDLESS
+    alone = rate > 0 and not long
+    name, unit, growth = about
     return Cure(
-        at.parameter, unit, low, high, growth_below, above.finite[0] if above.finite else 0.0,
-        finite[1] if finite else None, finite[2] if finite else None, 2 * np.pi / finite[1] if finite else None,
-        (below is not None and below.certified, above.certified), tuple(notes),
+        name, unit, growth, run.tried, run.below, run.above, run.last, run.beyond, run.again, grows, rate,
+        wavenumber if alone else None, angle if alone else None,
+        2 * pi / wavenumber if alone and isfinite(wavenumber) else None,
+        certified, upper, (why, note) if long else (note,),
     )  # fmt: skip
-
-
-def strain_rate(base: Base) -> float:
-    """Return ||V||."""
-    ((u_x, u_y), (v_x, v_y)) = base.state[0][1]
-    return float(sqrt(u_x**2 + v_y**2 + (u_y + v_x) ** 2 / 2))
-
-
-def proves(at: Point, value: float, wave: tuple[float, float, float], growth: float) -> bool:
-    """Return whether one wave's enclosed growth rate exceeds the bound: then no smaller bound holds at that value."""
-    _, wavenumber, angle = wave
-    if not isfinite(wavenumber):
-        return well_posedness(at.closure, at.flow, at.given(value), dict(at.point)).certified
-    if not Model(at.closure, at.flow).closed:
-        return False
-    found = eigenvalues(at.closure, at.flow, at.given(value), dict(at.point), wavenumber, angle, rtol=CERTIFY_RTOL)
-    return bool(found[0].real * (1 - CERTIFY_RTOL) > growth)

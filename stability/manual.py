@@ -21,6 +21,9 @@ Examples:
   stability derive my_file.py:MY_CLOSURE   the matrix of a closure of your own
   stability resume N1.nc.checkpoint        go on with a march that was stopped
 
+python -m stability is the same command. It takes no package from the present folder, where a scene from elsewhere may
+have brought one; python -P -m stability does not look there for modules of Python itself either.
+
 \b
 Scenes:    stability run --help shows a whole one; figures/scenes/ holds one per figure
 Results:   import stability; ds = stability.open_results("P2.1.nc")
@@ -77,6 +80,8 @@ Kinds of request:
                   directions until ln(wavenumber) steps by less along the curve
   well_posedness  point, matrix ("full" or "truncated"): stable, unstable but bounded, or ill-posed; with which power of
                   the wavenumber short waves grow, in which directions, and because of which term
+  smallest_cure   parameter, point: the least value of a parameter that makes the point well-posed or bounds growth;
+                  see below
   field_map       the verdict at every point of a flow field in a file; see below
   phase_diagram   delta, scaled_wavenumber; closure perturbed, flow uniform_strain, friction_angle alone;
                   growth = false asks for the regions alone
@@ -109,10 +114,21 @@ The request of a march; what has a default here may be left out:
   newton = 1e-9                          # the last update of Newton's method, relative to the scales of the fields
 
 \b
+The request of a smallest_cure, whose parameter stands nowhere else in the scene; all else may be left out:
+  [request]
+  kind = "smallest_cure"
+  parameter = "epsilon"                  # or "viscosity", where one parameter of the closure has that in its name
+  point = { r = 1.0, theta = 0.0 }       # left out for a uniform flow
+  growth = 100.0                         # 1/s, which no wave may exceed; left out or 0: no short wave may grow
+  bracket = { from = 1e-9, to = 1.0 }    # the values between which to look; left out: the parameter's range
+  rtol = 1e-6                            # between a value that cures and one that does not
+  longest = 0.5                          # m, of the waves that are looked at; left out: p/|grad p|
+
+\b
 The request of a field_map, with flow = "field" and the closure's parameters alone; all but the file may be left out:
   [request]
   kind = "field_map"
-  file = "flow.vtu"                      # from the scene's folder; .nc, .vtu, .vts, and .vtk with the extra vtk
+  file = "flow.vtu"                      # from the scene's folder; .nc, .vtu, .vts; with extras netCDF-4, .vtk
   fields = { u = "velocity:0", v = "velocity:1", p = "stress" }   # left out: u, v (or velocity) and p (or pressure)
   time = 0.1                             # s, of the snapshot; left out: the last
   density = 1500.0                       # kg/m3, which p is divided by; left out: p is stress over density

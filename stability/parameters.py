@@ -71,6 +71,8 @@ class Parameter:
         return f"({self.low:g}, {self.high:g}){unit}"
 
 
+WIDEST, INSIDE = (1e-15, 1e15), 1e-12  # bracket of an open range without a bound; how far inside a bound one begins
+
 # Shared by the closures (yield condition) and by the hopper flow (Psi_w, w): one record, one range.
 FRICTION_ANGLE = Parameter("friction_angle", "varphi", "deg", 0, 90, "internal angle of friction", "paper, I2")
 EPSILON = Parameter("epsilon", "epsilon", "s", 0, inf, "time scale of the singular perturbation", "paper, P1.1")
@@ -83,6 +85,31 @@ def merged(*groups: Iterable[Parameter]) -> dict[str, Parameter]:
         if records.setdefault(record.word, record) != record:
             raise SceneError(f"parameter {record.word} is declared twice with different records")
     return records
+
+
+def meant(word: str, records: Iterable[str], own: Iterable[str]) -> str:
+    """Return the parameter that a word names: one of the records, or the one of the closure's own that contains it."""
+    if word in (known := list(records)):
+        return word
+    near = [w for w in own if word and word in w]
+    if len(near) == 1:
+        return near[0]
+    if near:
+        raise SceneError(f"parameter {word} may be {' or '.join(near)}: say which")
+    raise SceneError(f"parameter {word} is unknown here; known are {', '.join(sorted(known))}")
+
+
+def bracketed(record: Parameter, bracket: tuple[float, float] | None = None) -> tuple[float, float]:
+    """Return the bracket, or a parameter's range of positive values where there is none; its open ends are left out."""
+    if bracket is None:
+        return max(record.low * (1 + INSIDE), WIDEST[0]), min(record.high * (1 - INSIDE), WIDEST[1])
+    low, high = bracket
+    if not 0 < low < high:
+        raise SceneError(f"bracket = {bracket!r}: give two increasing positive numbers")
+    for end in bracket:
+        if problem := record.problem(end, "bracket"):
+            raise SceneError(problem)
+    return low, high
 
 
 def problems(records: Mapping[str, Parameter], values: Mapping[str, Any], where: str = "parameter") -> list[str]:

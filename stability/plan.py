@@ -280,6 +280,7 @@ PLANS: dict[str, Callable[[Any], Any]] = {
     "growth_map": _growth_map,
     "march": _march,
     "well_posedness": estimates.well_posedness,
+    "smallest_cure": estimates.smallest_cure,
     "crosscheck": estimates.crosscheck,
     "field_map": estimates.field_map,
 }

@@ -2,8 +2,10 @@
 
 import json
 import platform
+import struct
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import xarray as xr
 
 from stability.closures import CLOSURES
 from stability.codegen import write_atomically
+from stability.errors import SceneError
 from stability.flows import FLOWS
 from stability.model import Base, Model
 
@@ -57,6 +60,12 @@ VARIABLES = {
     "fastest_growth_rate": ("1/s", "largest growth rate found over waves of every length"),
     "fastest_wavenumber": ("1/m", "wavenumber of that wave"),
     "fastest_wave_angle": ("deg", "direction of that wave"),
+    "cure_below": ("SI", "value of the parameter that does not cure, just below the least that does"),
+    "cure_from": ("SI", "least value of the parameter found to cure"),
+    "cure_to": ("SI", "value up to which those tried from there on cure"),
+    "cure_beyond": ("SI", "value just beyond that does not cure"),
+    "growth_below": ("1/s", "largest growth rate at the value just below"),
+    "band_width": ("m", "length of the fastest wave that is left"),
     "time": ("s", "simulated time of a snapshot"),
     "velocity_r": ("m/s", "velocity away from the apex"),
     "velocity_theta": ("m/s", "velocity across the rays, away from the axis"),
@@ -74,6 +83,19 @@ VARIABLES = {
     "momentum_budget": ("1", "what the momentum balances miss together, relative to the scales"),
 }
 
+
+# First bytes of a netCDF file: its format, and the engines of xarray with the modules that they need.
+HDF5 = {"h5netcdf": "h5netcdf", "netcdf4": "netCDF4"}
+ENGINES: dict[bytes, tuple[str, dict[str, str]]] = {
+    b"CDF\x01": ("netCDF-3", {"scipy": "scipy"}),
+    b"CDF\x02": ("netCDF-3", {"scipy": "scipy"}),
+    b"CDF\x05": ("netCDF-3 of 64-bit data", {"netcdf4": "netCDF4"}),
+    b"\x89HDF\r\n\x1a\n": ("netCDF-4 (HDF5)", HDF5),
+}
+NEEDS = {
+    "netCDF-4 (HDF5)": "the extra data: pip install 'granular-stability[data]'",
+    "netCDF-3 of 64-bit data": "the package netCDF4: pip install netCDF4",
+}
 
 RESIDUALS = {"u": "momentum_residual_x", "v": "momentum_residual_y"}
 RESIDUAL = "residual_"  # and the field that a balance law is for
@@ -172,10 +194,46 @@ def save(ds: xr.Dataset, path: str | Path) -> Path:
     return path
 
 
+def kind_of(path: Path) -> tuple[str, dict[str, str]]:
+    """Return the format of a netCDF file and what reads it, by its first bytes; ("", {}) of any other file."""
+    with open(path, "rb") as file:
+        first = file.read(max(map(len, ENGINES)))
+    return next((said for start, said in ENGINES.items() if first.startswith(start)), ("", {}))
+
+
+def is_netcdf(path: Path) -> bool:
+    """Return whether a file begins as one of netCDF does."""
+    return bool(kind_of(path)[1])
+
+
 def open_results(path: str | Path) -> xr.Dataset:
-    """Return a saved Dataset, read into memory."""
-    with xr.open_dataset(path, engine="scipy", decode_times=False) as ds:
-        return ds.load()
+    """Return a saved Dataset, or that of another netCDF file, read into memory.
+
+    Raises
+    ------
+    SceneError : a file of another format, one that is cut short, or one that needs a package which is not installed
+    OSError : no such file
+    """
+    path = Path(path)
+    format_, engines = kind_of(path)
+    if not engines:
+        raise SceneError(f"{path.name} is no netCDF file: it begins with the bytes of no format of netCDF")
+    engine = next((name for name, module in engines.items() if find_spec(module) is not None), None)
+    if engine is None:
+        raise SceneError(f"{path.name} is {format_}, which needs {NEEDS[format_]}")
+    try:
+        # SciPy leaves a file open that it cannot read, unless it was opened for it.
+        with open(path, "rb") as file:
+            with xr.open_dataset(file if engine == "scipy" else path, engine=engine, decode_times=False) as ds:
+                return ds.load()
+    # What is not whole fails somewhere in a library: in a header, in a length, in the data themselves.
+    except (EOFError, LookupError, OSError, OverflowError, RuntimeError, TypeError, ValueError, struct.error) as error:
+        raise SceneError(f"{path.name} is {format_} by its first bytes, and cannot be read: {told(error)}") from error
+
+
+def told(error: Exception) -> str:
+    """Return the first line of what a library says, which may go on with advice."""
+    return next((line.strip() for line in str(error).splitlines() if line.strip()), type(error).__name__)
 
 
 def registered(ds: xr.Dataset) -> tuple[str, str]:

@@ -47,10 +47,10 @@ def run(
 
     Returns
     -------
-    Dataset of the analysis (`growth_map`, `adaptive_map`, `neutral_curve`, `phase_diagram`, `short_waves`, `march`,
-    `crosscheck`, `field_map`) with attributes ``title``, ``request`` (its kind), ``scene_text`` and ``assumed``, so
-    that a file tells by itself what it is, and ``plan`` (JSON), ``plan_reason``, ``plan_warnings`` and, where something
-    may be approximated, ``predicted_error`` and ``true_error``: how it was made and what it misses
+    Dataset of the analysis (`growth_map`, `adaptive_map`, `neutral_curve`, `phase_diagram`, `short_waves`,
+    `least_cure`, `march`, `crosscheck`, `field_map`) with attributes ``title``, ``request`` (its kind), ``scene_text``
+    and ``assumed``, so that a file tells by itself what it is, and ``plan`` (JSON), ``plan_reason``, ``plan_warnings``
+    and, where something may be approximated, ``predicted_error`` and ``true_error``: how it was made and what it misses
 
     Raises
     ------
@@ -134,6 +134,15 @@ def _well_posedness(scene: Any, planned: "Estimate", report: show.Report | None)
     return short_waves(scene.closure, scene.flow, scene.parameters, scene.request.point, matrix)
 
 
+def _smallest_cure(scene: Any, planned: "Estimate", report: show.Report | None) -> "Dataset":
+    from stability.leastcure import least_cure  # and with it the search for fastest waves
+
+    ask = scene.request
+    bracket = None if ask.bracket is None else (ask.bracket.start, ask.bracket.stop)
+    asked = {"parameter": ask.parameter, "growth": ask.growth, "rtol": ask.rtol, "longest": ask.longest}
+    return least_cure(scene.closure, scene.flow, scene.parameters, ask.point, bracket=bracket, **asked)
+
+
 def _crosscheck(scene: Any, planned: "Estimate", report: show.Report | None) -> "Dataset":
     from stability.crosscheck.report import SATURATION, crosscheck
 
@@ -162,6 +171,7 @@ KINDS: dict[str, Callable[..., "Dataset"]] = {
     "neutral_curve": _neutral_curve,
     "phase_diagram": _phase_diagram,
     "well_posedness": _well_posedness,
+    "smallest_cure": _smallest_cure,
     "crosscheck": _crosscheck,
     "field_map": _field_map,
 }

@@ -41,8 +41,9 @@ def summary(ds: "Dataset") -> str:
 
 
 def _verdict(ds: "Dataset") -> list[tuple[str, str]]:
-    """Return what short waves do."""
-    return [*_wrapped("verdict", ds.attrs["sentence"]), *_wrapped("notes", *json.loads(ds.attrs["notes"]))]
+    """Return what short waves do, or which values of a parameter keep them from it."""
+    name = "cure" if "cure_from" in ds else "verdict"
+    return [*_wrapped(name, ds.attrs["sentence"]), *_wrapped("notes", *json.loads(ds.attrs["notes"]))]
 
 
 def _wrapped(name: str, *sentences: str) -> list[tuple[str, str]]:

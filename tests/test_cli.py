@@ -157,6 +157,38 @@ def test_statuses_reach_the_shell(tmp_path):
     assert process("rum", cwd=tmp_path).returncode == 2
 
 
+@pytest.fixture
+def strangers(tmp_path):
+    """Fill a folder with files that are named as packages, each of which leaves a trace when it is run."""
+    for name in ("click", "numpy", "pandas", "pydantic", "rich", "scipy", "sympy", "tomllib", "xarray", "json"):
+        (tmp_path / f"{name}.py").write_text(f"open('ran_{name}', 'w').close()\nraise ImportError\n")
+    (tmp_path / "scene.toml").write_text(GOOD)
+    return tmp_path
+
+
+def test_no_module_of_the_present_folder_stands_in_for_a_package(strangers):
+    done = process("run", "scene.toml", cwd=strangers)
+    assert done.returncode == 0, done.stderr
+    assert (strangers / "scene.nc").exists() and not list(strangers.glob("ran_*"))
+
+
+def test_the_present_folder_is_still_where_a_closure_of_ones_own_is_looked_for(strangers):
+    own = "from stability.closures.drucker_prager import PERTURBED as OWN\n"
+    (strangers / "own.py").write_text(own)
+    done = process("derive", "own.py:OWN", "--matrix", "leading", cwd=strangers)
+    assert done.returncode == 0 and "[2, 2] =" in done.stdout, done.stderr
+    assert not list(strangers.glob("ran_*"))
+
+
+def test_the_command_runs_from_a_checkout_and_where_python_was_told_to_be_safe(tmp_path):
+    plain = [sys.executable, "-m", "stability", "--version"]
+    bare = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    done = subprocess.run(plain, capture_output=True, text=True, cwd=ROOT, env=bare)
+    assert done.returncode == 0 and done.stdout.startswith("stability "), done.stderr
+    safe = process("--version", cwd=tmp_path, env={"PYTHONSAFEPATH": "1"})
+    assert safe.returncode == 0, safe.stderr
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT to send")
 def test_an_interrupt_ends_a_long_run_with_its_status_and_without_a_file(tmp_path):
     long = DIAGRAM.replace("{ values = [-0.5, 0.0, 0.5] }", "{ from = -0.5, to = 1.2, count = 20000 }")
@@ -214,7 +246,7 @@ def test_what_cannot_be_exported_is_named(marching, tmp_path):
     for result, says in (
         ("map.nc", "map.nc is not the result of a march or a field_map"),
         ("none.nc", "none.nc cannot be read as a result: "),
-        ("small.toml", "small.toml cannot be read as a result: "),
+        ("small.toml", "small.toml is no netCDF file"),
     ):
         done = marching("export", result, "--vtk", "vtk")
         assert done.exit_code == 2 and done.stderr.startswith(f"error: {says}"), done.output
@@ -297,6 +329,8 @@ def test_a_list_has_every_entry_and_every_parameter(call):
         "e_theta",
     ):
         assert phrase in page
+    assert "\n  provides the fields u, v, p, lap_u, lap_v, spin, n1, n2\n" in page
+    assert "\n  needs the fields u, v, p, lap_u, lap_v\n" in page
     assert "flow =" not in call("list", "closures").output
     assert "closure =" not in call("list", "flows").output
     assert call("list", "walls").exit_code == 2

@@ -1,4 +1,4 @@
-"""Scenes of the kinds well_posedness, field_map and crosscheck: what they hold, refuse, say and write."""
+"""Scenes of kinds well_posedness, smallest_cure, field_map and crosscheck: what they hold, refuse, say and write."""
 
 import json
 from pathlib import Path
@@ -46,6 +46,9 @@ kind = "field_map"
 file = "flow.vts"
 duration = 0.5
 """
+CURE = UNIFORM.format(closure="viscous", more="").replace(
+    '"well_posedness"', '"smallest_cure"\nparameter = "viscosity"'
+)
 CROSS = (
     GOOD.split("[request]")[0]
     + """
@@ -77,7 +80,8 @@ def problems(scene):
 
 
 def test_the_requests_on_the_help_page_load(scene):
-    for name, head in (("field_map", FIELD), ("crosscheck", CROSS)):
+    hopper = CROSS.replace('epsilon = { value = 2e-5, why = "the first of two values" }\n', "")
+    for name, head in (("field_map", FIELD), ("crosscheck", CROSS), ("smallest_cure", hopper)):
         page = next(p for p in manual.RUN.split("\b\n") if p.startswith(f"The request of a {name}"))
         table = page.split("\n", 1)[1].split("\n\n")[0].replace("flow.vtu", "scene.toml")
         assert st.load_scene(scene(head.split("[request]")[0] + table)).request.kind == name
@@ -161,6 +165,64 @@ def test_one_fault_of_a_verdict_is_one_sentence(old, new, begins, problems):
     assert found.startswith(begins)
 
 
+def test_a_least_cure_of_a_scene_is_the_one_that_a_script_gets(scene, tmp_path):
+    path = scene(CURE + "bracket = { from = 1e-3, to = 10.0 }\n")
+    ds = st.run(path)
+    given = {"friction_angle": 34.0, "delta": 0.0, "strain_rate": 1.0, "pressure": 1.0}
+    ask = {"parameter": "kinematic_viscosity", "bracket": (1e-3, 10.0)}
+    found = st.smallest_cure("viscous", "uniform_strain", given, {}, **ask)
+    assert [float(ds[f"cure_{n}"]) for n in ("below", "from", "to")] == [found.below, found.above, found.last]
+    assert_allclose(ds.cure_from, 0.0369593821168465, rtol=3e-6)  # (mu/2) tan^2(varphi/2), exact; twice rtol and balls
+    assert ds.cure_from.units == "m2/s" and np.isnan(ds.cure_beyond) and ds.attrs["parameter"] == "kinematic_viscosity"
+    assert json.loads(ds.attrs["parameters"])["kinematic_viscosity"] == found.above
+    assert f"{ds.attrs['sentence']} {' '.join(json.loads(ds.attrs['notes']))}" == str(found)
+    assert open_results(save(ds, tmp_path / "cure.nc")).identical(ds)
+
+
+def test_a_least_cure_is_printed_and_explained(scene, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    scene(CURE + "growth = 5.0\nbracket = { from = 1e-3, to = 1.0 }\nlongest = 1e3\n")
+    told = CliRunner().invoke(main, ["explain", "scene.toml"])
+    assert told.exit_code == 0 and "wanted         no wave grows faster than 5 1/s" in told.output
+    done = CliRunner().invoke(main, ["run", "scene.toml"])
+    assert done.exit_code == 0, done.output
+    assert "cure           kinematic_viscosity = 0.0369593" in done.stdout
+    assert "notes          What still grows does so no faster than ||V||" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "begins"),
+    [
+        ('"viscosity"', '"epsilon"', "[request] parameter epsilon is unknown here; known are delta, friction_angle"),
+        ("[request]", "kinematic_viscosity = 1.0\n[request]", "[parameters] kinematic_viscosity is what [request]"),
+        ("pressure = 1.0\n", "", "[parameters] pressure is missing"),
+        (
+            "[request]",
+            "[request]\ngrowth = -1.0",
+            "[request] growth = -1.0 should be greater than or equal to 0: it is",
+        ),
+        (
+            "[request]",
+            "[request]\nlongest = 0.0",
+            "[request] longest = 0.0 should be greater than 0: it is the longest",
+        ),
+        ("[request]", "[request]\nbracket = { from = 1.0 }", "[request] bracket.to is missing"),
+        (
+            "[request]",
+            "[request]\nbracket = { from = -1.0, to = 1.0 }",
+            "[request] bracket.from = -1.0 m2/s lies outside",
+        ),
+        ("[request]", "[request]\nbracket = { from = 2.0, to = 1.0 }", "[request] bracket.to = 1.0 must exceed"),
+        ("[request]", "[request]\nrtol = 0.0", "[request] rtol = 0.0 should be greater than or equal to 0.00"),
+        ("delta = 0.0", "delta = 0.1", "viscous imposes its constraint exactly"),
+        ("[request]", "[tolerance]\ngrowth = 0.1\n[request]", "[tolerance] growth = 0.1 belongs to a growth_map"),
+    ],
+)
+def test_one_fault_of_a_least_cure_is_one_sentence(old, new, begins, problems):
+    (found,) = problems(CURE.replace(old, new))
+    assert found.startswith(begins)
+
+
 @pytest.fixture
 def field(tmp_path):
     """Write flow.vts: pure strain at 1/s and unit pressure, in whose every point Coulomb flow is ill-posed."""
@@ -186,6 +248,12 @@ def test_a_field_map_is_run_from_a_scene_and_written_for_paraview(field, scene, 
     assert written.output == "wrote maps/scene.vts; open it in ParaView\n"
     told = CliRunner().invoke(main, ["explain", "scene.toml"])
     assert "field          flow.vts, 63 points" in told.output
+    (tmp_path / "elsewhere").mkdir()
+    moved = (tmp_path / "scene.nc").rename(tmp_path / "elsewhere" / "scene.nc")
+    lost = CliRunner().invoke(main, ["export", str(moved), "--vtk", "maps"])
+    assert lost.exit_code == 2 and "the field of this map is in flow.vts" in lost.stderr and "--scene" in lost.stderr
+    again = CliRunner().invoke(main, ["export", str(moved), "--vtk", "maps", "--scene", "scene.toml"])
+    assert again.exit_code == 0, again.output
 
 
 @pytest.mark.parametrize(

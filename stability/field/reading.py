@@ -10,7 +10,7 @@ import numpy as np
 from stability.errors import SceneError
 from stability.field import vtkxml
 from stability.field.grids import Field, Mesh
-from stability.results import open_results
+from stability.results import is_netcdf, open_results
 
 XML = (".vtu", ".vts")
 LEGACY = (".vtk", ".vtr", ".vti", ".vtp", ".pvtu", ".pvts")
@@ -25,9 +25,9 @@ def read_field(
 
     Parameters
     ----------
-    source : path of a netCDF (.nc), .vtu or .vts file; of another VTK file with the extra ``vtk``; or a Dataset. A
-        Dataset with the dimensions r and theta (degrees), such as the result of a march, is turned into Cartesian
-        components; another one has coordinates x and y, 1-D or 2-D
+    source : path of a netCDF, .vtu or .vts file; of another VTK file with the extra ``vtk``, of a netCDF-4 (HDF5) file
+        with the extra ``data``; or a Dataset. A Dataset with the dimensions r and theta (degrees), such as the result
+        of a march, is turned into Cartesian components; another one has coordinates x and y, 1-D or 2-D
     fields : ``{letter of the closure: name in the source}``; ``"velocity:1"`` is the second component of a vector.
         Letters left out are looked for as u, v (or velocity) and p (or pressure)
     time : s, of the snapshot nearest to it; None: the last one
@@ -43,6 +43,11 @@ def read_field(
             raise SceneError(f"{path.name}: there is no such file: {path.absolute()}")
         if path.suffix in (*XML, *LEGACY):
             return scaled(of_piece(piece_of(path), fields, path.name), density)
+        if not is_netcdf(path):
+            raise SceneError(
+                f"{path.name} is neither a netCDF nor a VTK file: fields are read from .nc, .vtu, .vts and other files "
+                "of VTK; give what you have read yourself to stability.field_from"
+            )
         return scaled(of_dataset(open_results(path), fields, time, path.name), density)
     return scaled(of_dataset(source, fields, time, "an xarray Dataset"), density)
 

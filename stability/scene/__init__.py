@@ -12,7 +12,16 @@ from typing import Any
 from stability.errors import SceneError
 from stability.scene.messages import fitted
 from stability.scene.physics import named, physics
-from stability.scene.requests import CrossCheck, FieldMap, GrowthMap, March, NeutralCurve, PhaseDiagram, WellPosed
+from stability.scene.requests import (
+    CrossCheck,
+    FieldMap,
+    GrowthMap,
+    March,
+    NeutralCurve,
+    PhaseDiagram,
+    SmallestCure,
+    WellPosed,
+)
 from stability.scene.shape import Tolerance
 
 
@@ -37,7 +46,7 @@ class Scene:
     flow: Any
     parameters: dict[str, float]
     assumed: dict[str, str]
-    request: GrowthMap | NeutralCurve | PhaseDiagram | WellPosed | FieldMap | March | CrossCheck
+    request: GrowthMap | NeutralCurve | PhaseDiagram | WellPosed | SmallestCure | FieldMap | March | CrossCheck
     tolerance: Tolerance
     text: str
     path: Path

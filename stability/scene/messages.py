@@ -83,6 +83,11 @@ MEANING = {
     "field_map.cells": "the wavelength in cells that the mesh resolves least, as in cells = 2.0",
     "longest": "the longest wave in m that is looked at; left out: the shorter side of the field's box",
     "check": "whether verdicts are tried at the other end of the gradients' error bars, true or false",
+    "parameter": 'the word of the parameter that is open, as in parameter = "epsilon"',
+    "smallest_cure.growth": "the growth rate in 1/s that no wave may exceed; left out or 0: no short wave may grow",
+    "smallest_cure.longest": "the longest wave in m that is looked at; left out: that over which the pressure changes",
+    "rtol": "how close the value that cures is to the one that does not, relative",
+    "bracket": "the values between which the least cure is looked for, as in { from = 1e-6, to = 1.0 }",
     "newton": "the last update of Newton's method, relative to the scales of the fields",
 }
 

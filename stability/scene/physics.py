@@ -18,7 +18,7 @@ from stability.errors import SceneError
 from stability.flows import FLOWS
 from stability.model import Model, no_truncation
 from stability.parameters import FRICTION_ANGLE, Parameter, merged
-from stability.scene import fields, runs
+from stability.scene import cures, fields, runs
 from stability.scene.messages import REQUESTS
 from stability.scene.numbers import constants, coordinates, sorted_out, table
 
@@ -29,10 +29,11 @@ AXES = (
     Parameter("delta", "delta", "1", -sqrt(2), sqrt(2), "rate of dilation tr V/||V||", "paper, P4.5"),
     Parameter("scaled_wavenumber", "L", "1", 0, inf, "scaled wavenumber Lambda epsilon", "paper, P9"),
 )
-AT_A_POINT = ("growth_map", "neutral_curve", "well_posedness", "crosscheck")  # requests that look at one point
+# Requests that look at one point.
+AT_A_POINT = ("growth_map", "neutral_curve", "well_posedness", "smallest_cure", "crosscheck")
 IN_TIME = {"march": runs.march, "crosscheck": runs.crosscheck}
 MAP_ONLY = {"sign": ("float",), "accuracy": ("auto", "standard"), "digits": ()}  # and what every kind may say of them
-UNTOLERANT = ("well_posedness", "crosscheck", "field_map")  # kinds of which nothing is approximated
+UNTOLERANT = ("well_posedness", "smallest_cure", "crosscheck", "field_map")  # kinds of which nothing is approximated
 DIAGRAM = {"closure": "perturbed", "flow": "uniform_strain"}  # what a phase diagram is drawn for
 
 
@@ -74,6 +75,12 @@ def physics(raw: dict, entries: dict[str, Any], folder: Path) -> list[str]:
         for word in known:
             if raw[word] != DIAGRAM[word]:
                 found.append(f'{word} = "{raw[word]}" has no phase diagram: it is drawn for "{DIAGRAM[word]}"')
+    opened: dict[str, float] = {}  # a value of the parameter that the scene leaves open
+    if kind == "smallest_cure" and both:
+        opened, raw, problems = cures.opened(raw, known, records)
+        found += problems
+        records = {word: record for word, record in records.items() if word not in opened}
+        both = bool(opened)  # else nobody knows which words are needed
     numbers, problems = constants(raw, records, complete=both)
     found += problems
     sound = both and len(numbers) == len(records)
@@ -81,7 +88,7 @@ def physics(raw: dict, entries: dict[str, Any], folder: Path) -> list[str]:
         point, problems = coordinates(request.get("point", {}), known["flow"]["POINT"])
         found += problems
         if sound and len(point) == len(known["flow"]["POINT"]):
-            found += base(entries, numbers, point) or _formless(entries, request, table(raw, "tolerance"))
+            found += base(entries, numbers | opened, point) or _formless(entries, request, table(raw, "tolerance"))
     if kind in IN_TIME:
         found += IN_TIME[kind](raw, known)
     if kind == "field_map":

@@ -60,6 +60,18 @@ class WellPosed(Table):
     matrix: Literal["auto", "full", "truncated"] = "auto"
 
 
+class SmallestCure(Table):
+    """The least value of a parameter, which the scene leaves open, that cures a point."""
+
+    kind: Literal["smallest_cure"]
+    point: dict[str, float] = {}
+    parameter: str = Field(default="epsilon", min_length=1)
+    growth: float = Field(default=0.0, ge=0)
+    rtol: float = Field(default=1e-6, ge=1e-14, lt=1)
+    bracket: Interval | None = None
+    longest: float | None = Field(default=None, gt=0)
+
+
 class MeshOf(Table):
     """A mesh of the hopper: about so many elements, over half the wedge or the whole of it."""
 
@@ -162,7 +174,8 @@ class FieldMap(Table):
 
 
 Request = Annotated[
-    GrowthMap | NeutralCurve | PhaseDiagram | WellPosed | FieldMap | March | CrossCheck, Field(discriminator="kind")
+    GrowthMap | NeutralCurve | PhaseDiagram | WellPosed | SmallestCure | FieldMap | March | CrossCheck,
+    Field(discriminator="kind"),
 ]
 
 

@@ -115,3 +115,27 @@ def test_a_rectilinear_dataset_is_read_by_its_coordinates(tmp_path):
     results.save(ds, tmp_path / "field.nc")
     for source in (ds, tmp_path / "field.nc", ds.transpose("x", "y")):
         assert_allclose(read_field(source).values["v"], values["v"], rtol=1e-15)
+
+
+def test_a_netcdf_4_file_is_read_with_the_extra_data_and_refused_with_its_name_without(tmp_path, monkeypatch):
+    (tmp_path / "four.nc").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+    with monkeypatch.context() as bare:
+        bare.setattr(results, "find_spec", lambda name: None)
+        with pytest.raises(SceneError, match=r"four.nc is netCDF-4 \(HDF5\), which needs the extra data: pip install"):
+            read_field(tmp_path / "four.nc")
+    pytest.importorskip("h5netcdf", reason="the extra data is not installed")
+    x, y = np.linspace(0, 1, 8), np.linspace(0, 2, 6)
+    values = strain(*np.meshgrid(x, y))
+    ds = xr.Dataset({n: (("y", "x"), a) for n, a in values.items()}, {"x": x, "y": y})
+    ds.to_netcdf(tmp_path / "four.nc", engine="h5netcdf")
+    assert_allclose(read_field(tmp_path / "four.nc").values["v"], values["v"], rtol=0, atol=0)
+
+
+@pytest.mark.parametrize("name", ["flow.csv", "flow.nc", "flow"])
+def test_any_other_file_is_refused_in_one_sentence(name, tmp_path):
+    (tmp_path / name).write_text("x,y,u,v,p\n0,0,1,0,1\n")
+    with pytest.raises(
+        SceneError, match=f"{name} is neither a netCDF nor a VTK file: .* stability.field_from"
+    ) as caught:
+        read_field(tmp_path / name)
+    assert "\n" not in str(caught.value)
