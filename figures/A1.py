@@ -56,7 +56,8 @@ def panel(ax: Axes, symbols: list[Symbol]) -> None:
             if low == high:
                 ax.axvline(low + turn, **CLOSING)
             else:
-                ax.axvspan(low + turn, high + turn, color=SHADES[int(first.exponent)], lw=0, zorder=0)
+                end = high if low < high else high + 360  # of a range that passes 0
+                ax.axvspan(low + turn, end + turn, color=SHADES[int(first.exponent)], lw=0, zorder=0)
     for s, line, y in zip(symbols, LINES, (0.96, 0.82 if symbols[0].wavenumber is None else 0.36), strict=False):
         ax.plot(s.wave_angle, s.growth, **line)
         ax.text(0.5, y, words(s), color=line["color"], ha="center", va="top", transform=ax.transAxes,

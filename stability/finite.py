@@ -15,6 +15,7 @@ FAN = 12  # directions; twice as many distances from each special one, on either
 SHORT = 1e3  # times the largest wavenumber at which two terms balance: corrections to the laws are then small
 SLACK = 1.05
 LOOK = 160  # bits of the roots of that independent look: slow modes beside fast ones take digits
+RISE = 1e-3  # relative: a plateau of growth towards long waves has rounding on it, no hump
 BEYOND = 1e3  # how far past the outermost balance of two terms the search goes
 
 
@@ -29,30 +30,47 @@ def scales(d: Directions) -> tuple[float, float]:
     return (min(found), max(found)) if found else (1.0, 1.0)
 
 
-def largest(base: Base, d: Directions, matrix: str) -> tuple[float, float, float]:
-    """Return (growth rate, wavenumber, wave_angle) of the fastest wave found; it may lie at the end of the range.
+def largest(base: Base, d: Directions, matrix: str) -> tuple[tuple[float, float, float] | None, bool]:
+    """Return ((growth rate, wavenumber, wave_angle) of the fastest wave found, whether that is the longest tried).
 
-    A grid first, then windows about the best wave, which shrink while it lies inside: ridges are followed.
+    A grid first, then windows about the best wave, which shrink while it lies inside: ridges are followed. The longest
+    waves grow by the gradients of the base state alone, often faster than all others: a wave that grows and is faster
+    than some longer one is preferred. None where float64 cannot hold the waves of this state.
     """
     low, high = scales(d)
     low, high = low / BEYOND, high * BEYOND
     angles, q = np.linspace(0, 180, DIRECTIONS, endpoint=False), np.geomspace(low, high, WAVENUMBERS)
-    best = (-np.inf, np.nan, np.nan)
+    growth = rates(base, angles, q, matrix)
+    if not np.isfinite(growth).any():
+        return None, False
+    rising = humps(growth.max(axis=0))
+    longest = not rising.any()
+    i, j = np.unravel_index(np.argmax(growth if longest else np.where(rising, growth, -np.inf)), growth.shape)
+    best = float(growth[i, j]), float(q[j]), float(angles[i])
     turn, stretch, unit = 180 / DIRECTIONS, np.log(high / low) / (WAVENUMBERS - 1), np.linspace(-1, 1, WINDOW)
     for _ in range(ZOOMS):
-        with np.errstate(all="ignore"):
-            found = base.form(angles, matrix).filled(angles.size).column().eigenvalues(q)
-        growth = leading(found)
-        growth = np.where(np.isfinite(growth), growth, -np.inf)
-        i, j = np.unravel_index(np.argmax(growth), growth.shape)
-        inside = 0 < i < angles.size - 1 and (0 < j < q.size - 1 or q[j] in (low, high))
-        if growth[i, j] > best[0]:
-            best = float(growth[i, j]), float(q[j]), float(angles[i])
-        if inside and angles.size == WINDOW:
-            turn, stretch = turn / SHRINK, stretch / SHRINK
         angles = best[2] + turn * unit
         q = np.clip(best[1] * np.exp(stretch * unit), low, high)
-    return best[0], best[1], best[2] % 180
+        growth = rates(base, angles, q, matrix)
+        i, j = np.unravel_index(np.argmax(growth), growth.shape)
+        if growth[i, j] > best[0]:
+            best = float(growth[i, j]), float(q[j]), float(angles[i])
+        if 0 < i < WINDOW - 1 and (0 < j < WINDOW - 1 or q[j] in (low, high)):
+            turn, stretch = turn / SHRINK, stretch / SHRINK
+    return (best[0], best[1], best[2] % 180), bool(best[0] > 0 and (longest or best[1] == low))
+
+
+def rates(base: Base, angles: np.ndarray, q: np.ndarray, matrix: str) -> np.ndarray:
+    """Return the largest growth rate of each wave (direction, wavenumber); -inf where float64 does not hold it."""
+    with np.errstate(all="ignore"):
+        growth = leading(base.form(angles, matrix).filled(angles.size).column().eigenvalues(q))
+    return np.where(np.isfinite(growth), growth, -np.inf)
+
+
+def humps(growth: np.ndarray) -> np.ndarray:
+    """Return where growth, over rising wavenumbers, is positive and above that of some longer wave."""
+    least = np.minimum.accumulate(np.where(np.isfinite(growth), growth, np.inf))
+    return (growth > 0) & (growth - least > RISE * growth)
 
 
 def excess(d: Directions, exponent: Any, coefficient: Any) -> str:
@@ -90,6 +108,16 @@ def growth_at(d: Directions, angle: float, q: Any) -> Any:
             return max((root - half).real, (-root - half).real)
         found = mp.polyroots([c.get(j, mp.mpc(0)) for j in range(max(c), -1, -1)], 200, extraprec=LOOK, error=False)
     return max((z.real for z in found), default=-mp.inf)
+
+
+def strain_rate(base: Base) -> float | None:
+    """Return ||V|| of a base state, or None where it has no velocity."""
+    if ("u", "v") not in base.model.fields:
+        return None
+    (u_x, u_y), (v_x, v_y) = base.state[base.model.fields.index(("u", "v"))][1]
+    shear = (u_y + v_x) / 2
+    a = base.model.arithmetic
+    return float(a.centre(a.sqrt(u_x * u_x + v_y * v_y + 2 * shear * shear)))
 
 
 def leading(found: tuple[Any, ...]) -> np.ndarray:

@@ -19,17 +19,21 @@ from typing import Any
 
 import numpy as np
 
-from stability import finite
+from stability import codegen, finite
 from stability.balls import enclosing
-from stability.causes import causes
+from stability.causes import causes, makers, silent
+from stability.closures import CLOSURES
 from stability.directions import Directions
 from stability.errors import SceneError, StabilityError
 from stability.layers import maximum
 from stability.model import Base, Model
 from stability.puiseux import Law, Numbers, laws, strongest
+from stability.singular import beside
 from stability.verdict import Kind, Verdict
+from stability.wedges import both_ways, merged
 
 BITS = (256, 512, 1024)  # each step must repeat what the one before found
+ALIKE = 1e-12  # relative: coefficients that agree in all digits that are printed have no direction
 SAMPLES = 24  # directions of an arc on which a neutral root was taken off: not decided by the deciding forms
 
 
@@ -43,6 +47,7 @@ class Candidate:
     angle: float
     width: Fraction
     depth: int
+    alike: bool = False  # in all directions of its exponent
 
     @property
     def key(self) -> tuple:
@@ -166,21 +171,52 @@ def well_posedness(closure: Any, flow: Any, parameters: dict, point: dict, matri
             reason = f"{type(e).__name__}: {e}"
             continue
         if before is not None and same(before, found):
-            verdict = concluded(d, found, base, matrix)
+            verdict = replace(concluded(d, found, base, matrix), siblings=siblings(closure))
             if verdict.kind is Kind.SINGULAR or verdict.kind is Kind.ILL_POSED:
                 return verdict
-            return replace(verdict, finite=finite.largest(Model(closure, flow).base(parameters, point), d, matrix))
+            return searched(verdict, base, d, (closure, flow, parameters, point, matrix))
         before, reason = found, "two precisions disagree about which coefficients vanish"
     return Verdict(Kind.UNDECIDED, notes=(f"{reason} (up to {BITS[-1]} bits)",))
+
+
+def searched(verdict: Verdict, base: Base, d: Directions, question: tuple) -> Verdict:
+    """Return the verdict with the fastest wave of any length, from a search in float64."""
+    closure, flow, parameters, point, matrix = question
+    with np.errstate(all="ignore"):  # a state beyond float64 has no finite growth rate, which is said
+        found, longest = finite.largest(Model(closure, flow).base(parameters, point), d, matrix)
+    notes = verdict.notes
+    if found is None:
+        notes += ("float64 does not hold this state: waves of finite length were not searched",)
+    rate = finite.strain_rate(base) if matrix == "full" else None
+    return replace(verdict, finite=found, longest=longest, strain_rate=rate, notes=notes)
+
+
+def siblings(closure: Any) -> tuple[str, ...]:
+    """Return the other closures of a registered one's module and source: branches of one law, each for its states."""
+    if closure not in CLOSURES:
+        return ()
+
+    def record(name: str) -> dict:
+        return codegen.load(CLOSURES, name, codegen.RECORDS)
+
+    module = CLOSURES.place(closure).split(":")[0]
+    near = [n for n in CLOSURES if n != closure and CLOSURES.place(n).split(":")[0] == module]
+    alike = [n for n in near if record(n)["SOURCE"] == record(closure)["SOURCE"]]
+    return tuple(f"{n} ({record(n)['TITLE']})" for n in alike)
 
 
 def concluded(d: Directions, found: Findings, base: Base, matrix: str) -> Verdict:
     """Return the verdict from what was found twice."""
     if found.missing:
-        return Verdict(Kind.SINGULAR, notes=("det(lambda E - L) has too low a degree in every direction",))
+        few = "det(lambda E - L) has too low a degree in every direction"
+        return Verdict(Kind.SINGULAR, cause=tuple(silent(base, matrix)), notes=(few,))
     if found.lost:
-        wedge = tuple((a, a) for a in both_ways(found.lost))
-        return Verdict(Kind.SINGULAR, wedge=wedge, notes=("a mode goes to infinity in these directions",))
+        lost = [s for s in d.special if s.angle in found.lost]
+        top = max(d.forms)
+        return Verdict(
+            Kind.SINGULAR, wedge=tuple((a, a) for a in both_ways(found.lost)), vanishing=top, beside=beside(d, lost),
+            cause=tuple(makers(base, matrix, d, top)), notes=("a mode goes to infinity in these directions",),
+        )  # fmt: skip
     best = fastest(found.candidates)
     notes = [f"coefficients that vanish to {d.numbers.bits} bits of their terms count as zero"]
     if found.sampled:
@@ -189,7 +225,7 @@ def concluded(d: Directions, found: Findings, base: Base, matrix: str) -> Verdic
         if best.exponent > -inf and best.arc[0] < best.arc[1]:
             best = peak(d, [c for c in found.candidates if c.exponent == best.exponent and c.arc[0] < c.arc[1]], best)
         exponent, coefficient = (None, None) if best.exponent == -inf else (best.exponent, float(best.coefficient))
-        angle = best.angle if exponent is not None else None
+        angle = None if exponent is None or best.alike else best.angle % 180
         if excess := finite.excess(d, 0, 0):
             notes.append(excess)
         return Verdict(
@@ -205,45 +241,27 @@ def concluded(d: Directions, found: Findings, base: Base, matrix: str) -> Verdic
     kind = Kind.ILL_POSED if best.exponent > 0 else Kind.BOUNDED
     place = best.angle if best.arc[0] < best.arc[1] else next(s for s in d.special if s.angle == best.angle)
     cause = tuple(causes(base, matrix, d, place, best.exponent))
+    worst = None if best.alike else best.angle % 180
     return Verdict(
-        kind, best.exponent, wedge, best.angle % 180, float(best.coefficient), best.width, cause,
+        kind, best.exponent, wedge, worst, float(best.coefficient), best.width, cause,
         certified=not (found.sampled or excess), notes=tuple(notes),
     )  # fmt: skip
 
 
-def both_ways(angles: Any) -> list[float]:
-    """Return directions with their opposites, in [0, 360)."""
-    return sorted((a + turn) % 360 for a in angles for turn in (0, 180))
-
-
-def merged(arcs: list[tuple[float, float]], within: set[float]) -> tuple[tuple[float, float], ...]:
-    """Return arcs with their opposites, joined at special directions that grow too.
-
-    The first angle of each is in [0, 360); of one that passes 0 the other lies beyond 360.
-    """
-    joined: list[tuple[float, float]] = []
-    for low, high in sorted(set(arcs)):
-        if joined and joined[-1][1] == low and low in within:
-            joined[-1] = joined[-1][0], high
-        else:
-            joined.append((low, high))
-    if len(joined) > 1 and joined[-1][1] == joined[0][0] + 180 and joined[0][0] in within:
-        joined = [*joined[1:-1], (joined[-1][0], joined[0][1] + 180)]
-    if any(b - a > 180 or (b - a == 180 and (a in within or a == 0)) for a, b in joined):
-        return ((0.0, 360.0),)
-    return tuple(sorted({((a + turn) % 360, (a + turn) % 360 + (b - a)) for a, b in joined for turn in (0, 180)}))
-
-
 def peak(d: Directions, alike: list[Candidate], best: Candidate) -> Candidate:
-    """Return the direction of largest coefficient over the arcs, to float64."""
+    """Return the direction of largest coefficient over the arcs, to float64, or that it is the same in all."""
 
     def coefficient(angle: float) -> Any:
         found = [law.coefficient for law in d.laws(angle) if law.exponent == best.exponent]
         return max(found, default=-inf)
 
-    for low, high in sorted({c.arc for c in alike}):
-        grid = [low + (high - low) * (i + 0.5) / SAMPLES for i in range(SAMPLES)]
-        values = [coefficient(a) for a in grid]
+    arcs = sorted({c.arc for c in alike})
+    grids = [[low + (high - low) * (i + 0.5) / SAMPLES for i in range(SAMPLES)] for low, high in arcs]
+    table = [[coefficient(a) for a in grid] for grid in grids]
+    most, least = max(map(max, table)), min(map(min, table))
+    if most - least <= ALIKE * abs(most):
+        return replace(best, alike=True)
+    for (low, high), grid, values in zip(arcs, grids, table, strict=True):
         i = max(range(SAMPLES), key=values.__getitem__)
         step = (high - low) / SAMPLES
         mp = d.numbers.mp

@@ -1,5 +1,6 @@
 """Verdicts against closed forms: the paper's systems (mathematics in `derivations`), and toys solved by hand."""
 
+import warnings
 from fractions import Fraction
 from math import inf, pi, sin, sqrt, tan
 
@@ -10,7 +11,9 @@ from numpy.testing import assert_allclose
 import stability as st
 from stability import balls
 from stability.errors import SceneError
+from stability.judge import siblings
 from tests import toys
+from tests.closures.benchmarks import GLASS
 from tests.conftest import HOPPER
 
 K = sqrt(2) * sin(34 * pi / 180)
@@ -112,12 +115,13 @@ def test_exponents_below_2_are_ill_posed_too(closure, exponent, coefficient):
     assert (found.kind, found.exponent, found.certified) == ("ill-posed", exponent, True)
     assert_allclose(found.coefficient, coefficient, rtol=1e-14)
     assert_allclose(min(found.worst_angle, 180 - found.worst_angle), 0, atol=1e-9)
-    assert_allclose(found.wedge, [(90, 270), (270, 450)], rtol=0, atol=1e-12)
+    assert_allclose(found.wedge, [(90, 270), (270, 90)], rtol=0, atol=1e-12)
 
 
 def test_antidiffusion_grows_in_every_direction():
     found = st.well_posedness(toys.DIFFUSION, toys.REST, {"growth": -1.5}, {})
     assert (found.exponent, found.coefficient, found.wedge) == (2, 1.5, ((0, 360),))
+    assert found.worst_angle is None and "alike in all directions" in str(found)
     assert st.well_posedness(toys.DIFFUSION, toys.REST, {"growth": 1.5}, {}).kind == "stable"
 
 
@@ -145,9 +149,74 @@ def test_growth_that_no_fixed_direction_shows_is_found():
 def test_constraints_that_determine_nothing_make_a_singular_symbol():
     everywhere = st.well_posedness(toys.FREE, toys.REST, {}, {})
     assert everywhere.kind == "singular symbol" and everywhere.wedge == ()
+    assert everywhere.cause == ("the balance of b responds to nothing here",)
     somewhere = st.well_posedness(toys.FREE_ALONG_Y, toys.REST, {}, {})
     assert somewhere.kind == "singular symbol"
     assert_allclose(somewhere.wedge, [(90, 90), (270, 270)], rtol=0, atol=1e-12)
+    # i q cos lambda = 1: the coefficient of lambda |xi| is that of b_x, and no wave grows or decays
+    assert somewhere.vanishing == (1, 1) and somewhere.beside.coefficient == 0
+    assert somewhere.cause == ("the response of first order to b in the balance of b",)
+
+
+def test_beside_a_singular_direction_growth_follows_its_closed_form():
+    # lambda = -(mu p q^2/(2 ||D||)) [nu - K c + (1 - nu) c^2]/(1 - K c), c = cos 2phi; K c = 1 at 9.08 degrees
+    I, (mu_s, mu_2, mu_inf, I_0) = 20.0, (0.342, 0.557, 0.05, 0.069)
+    given = {word: float(value) for word, value in GLASS.items()} | {"high_rate_friction": mu_inf}
+    found = st.well_posedness("mu_i_regularised", "uniform_strain", given | {"strain_rate": I / sqrt(2)}, {})
+    assert (found.kind, found.vanishing) == ("singular symbol", (1, 2))
+    top = mu_s * I_0 + mu_2 * I + mu_inf * I**2
+    mu, nu = top / (I_0 + I), I * ((mu_2 + 2 * mu_inf * I) / top - 1 / (I_0 + I))
+    slope = mu * (1 - nu / 2)
+    c = 1 / slope
+    assert_allclose(found.wedge[0], np.rad2deg(np.arccos(c)) / 2, rtol=1e-12)
+    expected = -mu * 2 / I * (nu - 1 + (1 - nu) * c**2) / (2 * slope * sqrt(1 - c**2))  # ||D|| = I/2
+    assert (found.beside.exponent, found.beside.power) == (2, 1)
+    assert_allclose(found.beside.coefficient, expected, rtol=1e-12)
+    assert found.beside.side == (1 if found.beside.angle < 90 else -1)  # where K c < 1
+    assert found.cause == (
+        "the response of first order to p in the balance of (u, v)",
+        "the response of first order to (u, v) in the balance of p",
+    )
+
+
+@pytest.mark.parametrize(
+    ("closure", "other", "title"),
+    [("mu_i_regularised", "mu_i_regularised_low", "branch of low I"),
+     ("mu_i_regularised_low", "mu_i_regularised", "branch of high I")],
+)  # fmt: skip
+def test_a_branch_of_a_law_points_to_the_other_one(closure, other, title):
+    (told,) = siblings(closure)
+    assert told.startswith(f"{other} (") and title in told
+
+
+def test_closures_that_share_a_module_or_nothing_point_nowhere():
+    assert siblings("rigid_plastic") == siblings("cosserat") == siblings(toys.FREE) == ()
+
+
+def test_a_state_beyond_float64_is_judged_without_a_warning():
+    given = {word: float(value) for word, value in GLASS.items()}
+    given |= {"high_rate_friction": 0.05, "low_rate_exponent": 1.9, "branch_inertial_number": 0.004}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = st.well_posedness(
+            "mu_i_regularised_low", "uniform_strain", given | {"strain_rate": 1e-300 / sqrt(2)}, {}
+        )
+    assert found.kind == "stable" and found.certified and found.finite is None
+    assert "float64 does not hold this state" in found.notes[-1] and "found to grow" not in str(found)
+
+
+def test_the_kinematics_of_the_longest_waves_is_no_instability_of_the_closure():
+    found = st.well_posedness("viscous", "radial_hopper", HOPPER | {"kinematic_viscosity": 1.0}, {"r": 1, "theta": 0})
+    assert found.kind == "stable" and found.longest and found.strain_rate < found.finite[0] < 10 * found.strain_rate
+    assert "the base flow's own kinematics (||V|| = 2.093 1/s)" in str(found) and "grow at" not in str(found)
+
+
+def test_waves_of_the_closures_own_band_are_told_although_longer_ones_grow():
+    # eta q^4 against the Coulomb growth of waves of 1/q, beside ||V||: the band ends at q_c = 19.2/m
+    given = strained(0.0, hyperviscosity=1e-4)
+    found = st.well_posedness("hyperstress", "uniform_strain", given, {})
+    assert not found.longest and found.worst_angle is None and 5 < found.finite[1] < 19.2
+    assert "waves grow at 3.20023 1/s" in str(found)
 
 
 def test_the_law_of_each_direction_is_l5_for_coulomb_flow():

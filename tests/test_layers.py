@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parent.parent / "stability"
 
 # Every module has its layer; a new module must be given one here.
 LAYERS = [
-    {"errors", "arithmetic", "spectrum", "realroots", "polynomials", "verdict", "__init__"},
+    {"errors", "arithmetic", "spectrum", "realroots", "polynomials", "verdict", "wedges", "__init__"},
     {"userfile"},
     {"parameters", "registry", "bounded", "fast", "puiseux", "forms", "progress", "bracketing", "cured"},
     {"symbols", "balls", "compiled", "layers", "general"},
@@ -30,7 +30,7 @@ LAYERS = [
     {"pointwise"},
     {"codegen"},
     {"model"},
-    {"results", "precise", "enclosures", "hoisted", "finite", "causes", "symbolmap"},
+    {"results", "precise", "enclosures", "hoisted", "finite", "causes", "singular", "symbolmap"},
     {"certified", "sweep", "probe", "judge"},
     {"guaranteed", "proof"},
     {"analyses"},

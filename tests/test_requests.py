@@ -122,7 +122,8 @@ def test_a_verdict_is_printed_and_explained(scene, monkeypatch, tmp_path):
     assert told.exit_code == 0 and "precision      balls of 256 bits" in told.output
     done = CliRunner().invoke(main, ["run", "scene.toml"])
     assert done.exit_code == 0, done.output
-    assert "verdict        ill-posed: short waves grow without bound, as 0.0369593821168 |xi|^2, at" in done.stdout
+    law = "0.0369593821168 m^2/s |xi|^2"
+    assert f"verdict        ill-posed: short waves grow without bound, as {law}, at" in done.stdout
     assert "Signs are\n" in done.stdout or "Signs are certified." in done.stdout
 
 

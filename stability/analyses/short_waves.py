@@ -3,6 +3,8 @@
 from math import nan
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from stability import results
 from stability.judge import well_posedness
 from stability.model import Model
@@ -22,13 +24,13 @@ def short_waves(closure: Any, flow: Any, parameters: dict, point: dict, matrix: 
     -------
     Dataset with the law of the fastest short waves, the wedges of directions that grow by it, the fastest wave of any
     length where it was looked for, and the base state there; what is not known is NaN. Attributes ``verdict`` (stable,
-    ill-posed, ...), ``sentence``, ``law``, ``cause``, ``certified`` and ``notes``
+    ill-posed, ...), ``sentence``, ``latex``, ``law``, ``unit``, ``cause``, ``certified`` and ``notes``
     """
     found = well_posedness(closure, flow, parameters, point, matrix)
     model = Model(closure, flow)
-    variables, coordinates, attributes = results.of_model(
-        model, parameters, point, model.base(parameters, point), matrix
-    )
+    with np.errstate(all="ignore"):  # what float64 does not hold of the state is NaN
+        base = model.base(parameters, point)
+        variables, coordinates, attributes = results.of_model(model, parameters, point, base, matrix)
     fastest = found.finite or (nan, nan, nan)
     numbers = {
         "exponent": found.exponent,
@@ -42,7 +44,7 @@ def short_waves(closure: Any, flow: Any, parameters: dict, point: dict, matrix: 
     attributes |= {"sign": "certified" if found.certified else "not certified"}
     ds = results.dataset(
         variables, coordinates, **attributes,
-        verdict=str(found.kind), sentence=str(found), law=found.law, cause=found.cause, certified=found.certified,
-        notes=found.notes,
+        verdict=str(found.kind), sentence=str(found), latex=found.latex, law=found.law, unit=found.unit,
+        cause=found.cause, certified=found.certified, notes=found.notes,
     )  # fmt: skip
     return ds.drop_dims("wedge") if not found.wedge else ds
