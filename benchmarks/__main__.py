@@ -9,7 +9,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 # Modules with a function `measure(quick)` that yields groups of rows, in the order of the report.
-PARTS = ("maps", "certified", "curves", "adaptive", "cold_start", "memory", "rungs", "stepper")
+PARTS = ("maps", "certified", "curves", "adaptive", "cold_start", "memory", "rungs", "fields", "stepper")
 # A second thread of the linear algebra would be somebody else's core.
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 

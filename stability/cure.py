@@ -16,8 +16,9 @@ from stability.bracketing import apart, halved, scanned
 from stability.closures import CLOSURES
 from stability.cured import Cure
 from stability.errors import SceneError
+from stability.finite import strain_rate
 from stability.model import Model
-from stability.opened import Point, decays, endless, exceeds, fastest_of, largest, stable, strain_rate
+from stability.opened import Point, decays, endless, exceeds, fastest_of, largest, stable
 from stability.parameters import bracketed, meant
 
 KINEMATICS = "What still grows does so no faster than ||V||: the kinematics of the longest waves."
@@ -137,7 +138,7 @@ def refused(at: Point, described: str, about: tuple[str, str, float], low: float
     _, unit, growth = about
     what = f"keeps the growth of every wave within {growth:g} 1/s" if growth else "makes short waves decay"
     text = f"no value tried from {low:g} to {high:g} {unit} of {described} {what}"
-    rate = strain_rate(at.base(high))
+    rate = strain_rate(at.base(high)) or 0.0
     if 0 < growth < rate:
         text += f": the longest waves grow at up to ||V|| = {rate:.4g} 1/s by the kinematics alone; ask for more growth"
     raise SceneError(text)
@@ -171,7 +172,7 @@ def answer(
     wave = largest(at, run.above, about[2])
     rate, wavenumber, angle = wave
     long = rate > 0 and endless(at, run.above, wave)
-    why = KINEMATICS if rate <= strain_rate(at.base(run.above)) else ENDLESS
+    why = KINEMATICS if rate <= (strain_rate(at.base(run.above)) or 0.0) else ENDLESS
     alone = rate > 0 and not long
     name, unit, growth = about
     return Cure(

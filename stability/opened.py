@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import ceil, inf, isfinite, log10, nan, pi, sqrt
+from math import ceil, inf, isfinite, log10, nan, pi
 from typing import Any
 
 import numpy as np
@@ -120,12 +120,6 @@ def endless(at: Point, value: float, wave: Wave) -> bool:
         return False
     longer = eigenvalues(at.closure, at.flow, at.given(value), dict(at.point), wavenumber / LONGER, angle)
     return bool(longer[0].real >= ALIKE * rate)
-
-
-def strain_rate(base: Base) -> float:
-    """Return ||V||."""
-    ((u_x, u_y), (v_x, v_y)) = base.state[0][1]
-    return float(sqrt(u_x**2 + v_y**2 + (u_y + v_x) ** 2 / 2))
 
 
 def exceeds(at: Point, value: float, wave: Wave, growth: float) -> bool:

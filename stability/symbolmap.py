@@ -14,6 +14,7 @@ import numpy as np
 from stability import polynomials
 from stability.model import Base, Model
 from stability.puiseux import Edge, polygon
+from stability.roots import roots
 
 DIRECTIONS = 90  # of the half circle; the largest coefficient is then polished by a parabola
 ROUNDING = 1e-9  # of the largest modulus of gamma: below this a real part is rounding
@@ -122,28 +123,6 @@ def along(forms: dict[tuple[int, int], np.ndarray], edge: Edge) -> np.ndarray:
         gamma = roots(c)
         top, size = gamma.real.max(axis=0), abs(gamma).max(axis=0)
     return np.where(abs(top) > ROUNDING * size, top, 0.0).reshape(shape)
-
-
-def roots(c: list) -> np.ndarray:
-    """Return the roots (root, point) of polynomials whose coefficients are arrays, constant term first."""
-    if len(c) == 2:
-        return (-c[0] / c[1])[None].astype(complex)
-    if len(c) == 3:
-        half = np.asarray(c[1] / (2 * c[2]), complex)
-        root = np.sqrt(half * half - c[0] / c[2])
-        root = np.where(np.real(half * root.conj()) > 0, -root, root)
-        far = root - half
-        return np.stack([far, np.where(far == 0, 0, c[0] / c[2] / np.where(far == 0, 1, far))])
-    n = len(c) - 1
-    size = np.broadcast_shapes(*(np.shape(e) for e in c))[0]
-    companion = np.zeros((size, n, n), complex)
-    companion[:, np.arange(1, n), np.arange(n - 1)] = 1
-    for i in range(n):
-        companion[:, i, -1] = -c[i] / c[n]
-    fine = np.asarray(np.isfinite(companion).all(axis=(1, 2)))
-    found = np.linalg.eigvals(np.where(fine[:, None, None], companion, 0))
-    found[~fine] = np.nan
-    return found.T
 
 
 def polished(growth: np.ndarray, index: np.ndarray, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

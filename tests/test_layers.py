@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parent.parent / "stability"
 
 # Every module has its layer; a new module must be given one here.
 LAYERS = [
-    {"errors", "arithmetic", "spectrum", "realroots", "polynomials", "verdict", "wedges", "__init__"},
+    {"errors", "arithmetic", "spectrum", "realroots", "polynomials", "roots", "verdict", "wedges", "__init__"},
     {"userfile"},
     {"parameters", "registry", "bounded", "fast", "puiseux", "forms", "progress", "bracketing", "cured"},
     {"symbols", "balls", "compiled", "layers", "general"},

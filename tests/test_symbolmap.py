@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import stability as st
-from stability.symbolmap import roots, symbol_map
+from stability.symbolmap import symbol_map
 from tests import toys
 from tests.conftest import HOPPER
 
@@ -35,12 +35,3 @@ def test_other_exponents_are_seen_too(closure, exponent, coefficient):
     found = symbol_map(closure, toys.REST, {}, {})
     assert found.exponent.shape == ()
     assert_allclose((found.exponent, found.coefficient), (exponent, coefficient), rtol=1e-12)
-
-
-@pytest.mark.parametrize("degree", [1, 2, 3])
-def test_roots_of_many_polynomials(degree):
-    rng = np.random.default_rng(degree)
-    c = rng.normal(size=(degree + 1, 7)) + 1j * rng.normal(size=(degree + 1, 7))
-    found = roots(list(c))
-    for point in range(7):
-        assert_allclose(np.sort_complex(found[:, point]), np.sort_complex(np.roots(c[::-1, point])), rtol=1e-11)

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
 FEW = 1.0  # e-folds: a wave that grows by less than e during the time stays what it was
 RESOLVED = 8.0  # cells a wavelength: what a second-order scheme carries with a few per cent of error
+SURE, SMALL = 2.0, 0.01  # estimated errors, and parts of ||V||: a divergence beyond both is the field's, and matters
 WORTH = 0.01  # of the points: fewer are told by their count in the last sentence only
 
 SAID = {
@@ -36,10 +37,11 @@ def field_answer(ds: "Dataset") -> str:
             share = f"{100 * here.sum() / total:.3g} % of them are "
             found.append(share + SAID[kind] + (detail(ds, here) if kind in (2, 3) else "") + ".")
     found.append(mesh_waves(ds, judged))
+    found.append(divergence(ds, judged))
     if "firm" in ds and (loose := int((judged & (ds["firm"].values.ravel() != 1)).sum())):
         found.append(f"At {loose} points the verdict changes within the error bars of the field's gradients: "
                      "there it is not decided.")  # fmt: skip
-    return " ".join([*found, counted(ds)])
+    return " ".join(filter(None, [*found, counted(ds)]))
 
 
 def detail(ds: "Dataset", here: np.ndarray) -> str:
@@ -71,6 +73,17 @@ def mesh_waves(ds: "Dataset", judged: np.ndarray) -> str:
     if many < WORTH:
         return tail + ": too little to make a band out of noise in that time."
     return tail + f"; at {100 * many:.3g} % by more than e: noise of the mesh's size becomes a band there."
+
+
+def divergence(ds: "Dataset", judged: np.ndarray) -> str:
+    """Return a warning where the field has a divergence that the closure does not allow."""
+    dilation, error = (ds[n].values.ravel() for n in ("dilation", "gradient_error"))
+    loose = judged & (abs(dilation) > np.maximum(SURE * error, SMALL))
+    if not int(ds.attrs["solenoidal"]) or loose.sum() < max(1, WORTH * judged.sum()):
+        return ""
+    return f"At {loose.sum()} points div u is more than errors of the gradients explain, up to " \
+           f"{abs(dilation[loose]).max():.3g} ||V||: this closure imposes div u = 0, and what was judged there is " \
+           "the flow without its divergence. Choose a closure that allows one."  # fmt: skip
 
 
 def counted(ds: "Dataset") -> str:

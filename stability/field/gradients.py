@@ -78,17 +78,22 @@ def jets(field: Field) -> Jets:
 
 def three_points(values: np.ndarray, axis: int, stride: int, order: int) -> np.ndarray:
     """Return the derivative by the index along an axis, of the parabola through three points a stride apart."""
-    n = values.shape[axis]
-    here = np.arange(n)
-    middle = np.clip(here, stride, n - 1 - stride)
-    t = (here - middle) / stride
-    ones = np.ones(n)
-    weights = (t - 0.5, -2 * t, t + 0.5) if order == 1 else (ones, -2 * ones, ones)
-    shape = [1] * values.ndim
-    shape[axis] = n
-    found = np.zeros(values.shape)
-    for w, shift in zip(weights, (-stride, 0, stride), strict=True):
-        found += (w / stride**order).reshape(shape) * values.take(middle + shift, axis)
+    found = np.empty(values.shape)
+    f, out = np.moveaxis(values, axis, 0), np.moveaxis(found, axis, 0)
+    n, last = len(f), len(f) - 1 - stride
+    if order == 1:
+        np.subtract(f[2 * stride :], f[: n - 2 * stride], out=out[stride : last + 1])
+        out[stride : last + 1] /= 2 * stride
+    else:
+        np.add(f[2 * stride :], f[: n - 2 * stride], out=out[stride : last + 1])
+        out[stride : last + 1] -= 2 * f[stride : last + 1]
+        out[stride : last + 1] /= stride**2
+    for i in (*range(stride), *range(last + 1, n)):  # the ends: the parabola of the nearest inner point
+        middle = stride if i < stride else last
+        t = (i - middle) / stride
+        weights = (t - 0.5, -2 * t, t + 0.5) if order == 1 else (1, -2, 1)
+        places = (middle - stride, middle, middle + stride)
+        out[i] = sum(w * f[j] for w, j in zip(weights, places, strict=True)) / stride**order
     return found
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from stability.model import Base
 
 LAYER = 0.2  # of the width 1/sqrt(1 + 2 L) over which D' varies across its null direction
+RANKED = 12  # wavenumbers between which closed forms choose
 WIDEST = np.deg2rad(4)  # window of a search: growth varies over some 20 degrees
 
 
@@ -24,6 +25,11 @@ class Guide:
     radius: np.ndarray  # R
     k: np.ndarray
     scale: np.ndarray  # mu epsilon/2: L over q^2
+
+    @property
+    def ranked(self) -> bool:
+        """Whether closed forms also tell which wavenumber is the best one."""
+        return self.kind == "perturbed"
 
     @property
     def guided(self) -> bool:
@@ -43,6 +49,20 @@ class Guide:
     def leading(self) -> "Guide":
         """Return the guide to the leading symbol alone."""
         return self if self.kind == "coulomb" else replace(self, kind="none")
+
+    def wavenumber(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return the wavenumber, of some from end to end, that grows most by (P8T), (P8D) in the guide's direction."""
+        span, best, top = np.log(high / low), low, np.full(low.shape, -np.inf)
+        for part in np.linspace(0, 1, RANKED):
+            q = low * np.exp(part * span)
+            L = self.scale * q * q
+            C = -(self.k + 2 * L * self.delta) / (2 + 2 * L)
+            d, a = (self.delta + C) / 2, (self.delta - C) / 2
+            trace = -L * (2 + self.delta * C) - (1 - self.k * a)
+            minus = -L * ((1 + 2 * L) * d * d + a * a - self.k * a)  # of the determinant
+            growth = 2 * minus / (np.sqrt(np.maximum(trace * trace + 4 * minus, 0)) - trace)
+            best, top = np.where(growth > top, q, best), np.maximum(growth, top)
+        return best
 
     def directions(self, wavenumber: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return angles and widths (point, n), radians, at one wavenumber a point; n = 0 without a guide."""

@@ -13,20 +13,19 @@ from typing import Any
 
 import numpy as np
 
-from stability import polynomials
 from stability.field.guides import Guide, guide
-from stability.field.search import SPARSE, fan, fastest
-from stability.field.waves import Closed, Waves, waves_of
+from stability.field.search import Fastest, fastest
+from stability.field.waves import Waves, waves_of
 from stability.finite import leading
 from stability.model import Base
-from stability.symbolmap import of_base
 
-ROUNDING = 1e-9  # of the leading symbol's entries: a growing coefficient below this is rounding, as in `symbolmap`
+ROUNDING = 1e-9  # of the largest root: a growing coefficient below this is rounding, as in `symbolmap`
 SHORT, SHORTER = 100.0, 1000.0  # times the scale: corrections to the law of short waves are then 1e-4 and 1e-6
 # Times the scale: the search for the fastest wave ends there. At delta = 0 it lies at 0.8, and growth that approaches
 # a bound is within 1e-3 of it.
 REACH = 30.0
-NOISE = {True: 1e-13, False: 1e-11}  # of mu q^2: a sign below it is undecided; closed forms and `eigvals`
+NEAR = 1e-7  # of the largest eigenvalue: the roundings of a search, 1e-15 or so of it, are then 1e-8 of a growth rate
+NOISE = {True: 1e-13, False: 1e-11}  # of the largest eigenvalue: a sign below it is undecided; computed again, or not
 CODES = ("masked", "stable", "finite", "bounded", "ill-posed", "undecided")
 
 
@@ -87,7 +86,7 @@ def judged(base: Base, count: int, longest: float, grid: np.ndarray) -> Judged:
     found = Judged.empty(count)
     low, finest = np.full(count, 2 * np.pi / longest), 2 * np.pi / grid
     mesh = fastest(waves, hint, finest, finest)
-    found.grid_growth[:] = exact(base, np.arange(count), mesh.angle, finest, mesh.growth)
+    found.grid_growth[:] = settled(base, np.arange(count), mesh, waves.bound(finest))[0]
     found.grid_angle[:] = np.rad2deg(mesh.angle)
     for name in ("code", "exponent", "coefficient"):
         getattr(found, name)[:] = getattr(short, name)
@@ -96,8 +95,9 @@ def judged(base: Base, count: int, longest: float, grid: np.ndarray) -> Judged:
     some = np.flatnonzero(~ill)
     if some.size:
         high = np.fmax(np.fmax(REACH * short.scale[some], finest[some]), 10 * low[some])
-        best = fastest(waves.take(some), hint.take(some), low[some], high)
-        growth = exact(base, some, best.angle, best.wavenumber, best.growth)
+        states = waves.take(some)
+        best = fastest(states, hint.take(some), low[some], high)
+        growth = settled(base, some, best, states.bound(best.wavenumber))[0]
         shortest = (short.exponent[some] == 0) & (short.coefficient[some] >= growth)
         found.growth[some] = np.where(shortest, short.coefficient[some], growth)
         found.wavelength[some] = np.where(shortest, 0.0, 2 * np.pi / best.wavenumber)
@@ -108,69 +108,62 @@ def judged(base: Base, count: int, longest: float, grid: np.ndarray) -> Judged:
     return found
 
 
-def exact(base: Base, index: np.ndarray, angle: np.ndarray, wavenumber: np.ndarray, search: np.ndarray) -> np.ndarray:
-    """Return the growth rates of single waves as `stability.eigenvalues` computes them."""
-    if not base.model.closed:
-        return search
-    form = base.at(index).form(np.rad2deg(angle)).filled(index.size)
-    with np.errstate(all="ignore"):
-        return leading(form.eigenvalues(wavenumber))
-
-
 def short_waves(base: Base, waves: Waves, hint: Guide) -> Short:
     """Return what short waves do at every point: stages 1 and 2."""
     count, one = waves.count, np.ones(waves.count)
-    if isinstance(waves, Closed):
-        size = np.abs(waves.tensors.C[2]).max(axis=1)
-        exponent, coefficient, angle = 2 * one, 0 * one, 0 * one
-        if not hint.never:
-            first = fastest(waves.leading(), hint.leading(), one, one)
-            coefficient, angle = first.growth, first.angle
-        ill = coefficient > ROUNDING * size
-        scale = one if ill.all() else waves.scale(np.broadcast_to(fan(SPARSE), (count, SPARSE)))
-    else:
-        symbol = of_base(base, (count,))
-        exponent, coefficient, angle = symbol.exponent, symbol.coefficient, np.deg2rad(symbol.wave_angle)
-        ill = (symbol.exponent > 0) & (symbol.coefficient > 0)
-        scale, size = balance(base, count), 0 * one
-    found = Short(np.where(ill, 4, 1), np.where(ill, exponent, np.nan), np.where(ill, coefficient, np.nan),
-                  angle.copy(), scale)  # fmt: skip
-    some = np.flatnonzero(~ill)
-    if not some.size:
-        return found
-    near, q = hint.take(some), SHORT * scale[some]
-    best = fastest(waves.take(some), near, q, q, watch=False)
-    one_ = exact(base, some, best.angle, q, best.growth)
-    rough = NOISE[base.model.closed] * size[some] * q**2
-    grows, two = one_ > rough, np.full(some.size, np.nan)
-    if grows.any():  # the law of those that grow, from a second wavenumber
-        again, q_two = some[grows], SHORTER * scale[some[grows]]
-        other = fastest(waves.take(again), near.take(grows), q_two, q_two, watch=False)
-        two[grows] = exact(base, again, other.angle, q_two, other.growth)
-    with np.errstate(all="ignore"):
-        n = np.round(np.log(two / one_) / np.log(SHORTER / SHORT)) + 0.0  # no negative zero
-    found.code[some] = np.where(grows, 3, np.where(one_ > -rough, 5, 1))
-    found.code[some[~np.isfinite(one_)]] = 5
-    found.exponent[some] = np.where(grows & (two > 0), n, np.nan)
-    with np.errstate(all="ignore"):
-        found.coefficient[some] = np.where(grows & (two > 0), one_ * q**-n, np.nan)
-    found.angle[some] = best.angle
+    scale, nan = waves.scale(), np.full(count, np.nan)
+    found = Short(np.ones(count, int), nan, nan.copy(), np.zeros(count), scale)
+    rest = np.arange(count)
+    for edge in [] if hint.never else waves.edges:
+        if not rest.size:
+            return found
+        leading, unit = waves.along(edge).take(rest), one[rest]
+        first = fastest(leading, hint.take(rest).leading(), unit, unit)
+        grows = first.growth > ROUNDING * leading.bound(unit)
+        some = rest[grows]
+        found.code[some], found.exponent[some] = 4, float(edge.exponent)
+        found.coefficient[some], found.angle[some] = first.growth[grows], first.angle[grows]
+        rest = rest[~grows]
+    if rest.size:
+        limits(base, waves, hint, rest, found)
     return found
 
 
-def balance(base: Base, count: int) -> np.ndarray:
-    """Return the largest wavenumber (point,) at which a term of det(lambda E - L) balances the highest of its power.
-
-    Only the highest: others may be roundings of zero, and two of those balance anywhere.
-    """
-    sizes: dict[tuple[int, int], np.ndarray] = {}
-    for (j, m, _), c in polynomials.symbol(base.model.evolves, base.resting()[0].pencil()).items():
-        sizes[j, m] = np.maximum(sizes.get((j, m), np.zeros(count)), np.abs(c))
-    found = np.zeros(count)
+def limits(base: Base, waves: Waves, hint: Guide, some: np.ndarray, found: Short) -> None:
+    """Put what short waves do where no edge of the polygon makes them grow without bound: stage 2."""
+    near, q = hint.take(some), SHORT * found.scale[some]
+    states = waves.take(some)
+    best = fastest(states, near, q, q, watch=False)
+    one, rough = settled(base, some, best, states.bound(q))
+    grows, two = one > rough, np.full(some.size, np.nan)
+    if grows.any():  # the law of those that grow, from a second wavenumber
+        q_two = SHORTER * found.scale[some[grows]]
+        other = states.take(grows)
+        two[grows] = settled(
+            base, some[grows], fastest(other, near.take(grows), q_two, q_two, watch=False), other.bound(q_two)
+        )[0]
     with np.errstate(all="ignore"):
-        for (j, m), a in sizes.items():
-            n = max(k for i, k in sizes if i == j)
-            if n > m:
-                ratio = (a / sizes[j, n]) ** (1 / (n - m))
-                found = np.fmax(found, np.where(np.isfinite(ratio), ratio, 0))
-    return np.where(found > 0, found, 1.0)
+        n = np.round(np.log(two / one) / np.log(SHORTER / SHORT)) + 0.0  # no negative zero
+        found.exponent[some] = np.where(grows & (two > 0), n, np.nan)
+        found.coefficient[some] = np.where(grows & (two > 0), one * q**-n, np.nan)
+    found.code[some] = np.where(grows, 3, np.where(one > -rough, 5, 1))
+    found.code[some[~np.isfinite(one)]] = 5
+    found.angle[some] = best.angle
+
+
+def settled(base: Base, index: np.ndarray, wave: Fastest, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return growth rates, computed again as `stability.eigenvalues` does where roundings count, and what they may be.
+
+    Parameters
+    ----------
+    size : of the largest eigenvalue of each wave
+    """
+    growth = wave.growth.copy()
+    if not base.model.closed:
+        return growth, NOISE[False] * size
+    near = np.flatnonzero(~(abs(growth) > NEAR * size))
+    if near.size:
+        form = base.at(index[near]).form(np.rad2deg(wave.angle[near])).filled(near.size)
+        with np.errstate(all="ignore"):
+            growth[near] = leading(form.eigenvalues(wave.wavenumber[near]))
+    return growth, NOISE[True] * size

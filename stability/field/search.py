@@ -1,23 +1,28 @@
 """The fastest wave about each of many base states: first guesses, then Newton's method in direction and wavenumber.
 
-Guesses are a fan of directions at several wavenumbers, and the directions of `guides` where closed forms give them; the
-fan is then sparse and only watches over long waves. From the best guess on, a window of 3 x 3 waves gives slope and
-curvature; where the surface is not concave the window moves to its best wave.
+Guesses are a fan of directions at several wavenumbers, and the waves of `guides` where closed forms give them. From the
+best guess on, Newton's method with exact derivatives climbs to the top, in two to five steps; no further at a time than
+a trusted distance, which shrinks where growth falls and doubles where it rises.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from stability.field.guides import Guide
 from stability.field.waves import Waves
 
-FAN, SPARSE = 36, 8  # directions of the half circle without and with a guide; growth varies over some 20 degrees
-COLUMNS, FEW = 8, 3  # wavenumbers from end to end, for guided directions or a full fan, and for a sparse one
-STEPS = 16  # at most; three or four do where a guide starts, and curved ridges take up to ten
-TOLERANCE = 1e-6  # of the growth rate: a step that promises less is the last one, and leaves an error of 1e-9 or so
-SHRINK, LONGEST = 4.0, 1.5  # of the window after a step, and the longest step in windows
-UNIT = np.array([-1.0, 0.0, 1.0])
+FAN = 24  # directions of the half circle: growth varies over some 20 degrees
+COLUMNS, FEW = 8, 5  # wavenumbers from end to end, without and with a guide to the best one
+STEPS = 24  # at most: curved ridges take up to twenty
+TOLERANCE = 1e-6  # of the growth rate: a step that promises less is the last one, and leaves an error of 1e-11 or so
+ROUNDING = 1e-13  # of the largest eigenvalue: gains below it cannot be seen
+SHRINK = 4.0  # of the trusted distance after a step that led down
+TIE = 1e-9  # of a growth rate: of hills that are equally high but for roundings, the first one is climbed
+APART, FAR = np.pi / 6, 1.5  # between hills at least: radians, or spacings of the wavenumbers looked at
+RIVAL = 0.5  # of the best guess: lower hills are not climbed
+CROWD = 0.7  # of the points, when more are still climbing none is left behind: taking some costs as much as a step
 
 
 @dataclass(frozen=True)
@@ -29,14 +34,34 @@ class Fastest:
     angle: np.ndarray
 
 
+@dataclass(frozen=True)
+class Guess:
+    """Waves at each point, (point,) or (point, n): growth rate, its rank among guesses, and the width of the hill."""
+
+    rank: np.ndarray
+    growth: np.ndarray
+    angle: np.ndarray
+    wavenumber: np.ndarray
+    width: np.ndarray
+
+    def take(self, rows: np.ndarray, columns: np.ndarray) -> "Guess":
+        """Return one wave for each of some points."""
+        return Guess(*(getattr(self, f.name)[rows, columns] for f in fields(self)))
+
+    @classmethod
+    def joined(cls, guesses: Sequence["Guess"]) -> "Guess":
+        """Return the waves of all guesses."""
+        return cls(*(np.concatenate([getattr(g, f.name) for g in guesses], axis=1) for f in fields(cls)))
+
+
 def fan(count: int) -> np.ndarray:
     """Return directions (1, count) over half a circle, radians; not along axes, where symmetric states are special."""
     return (np.pi / count * (np.arange(count) + 0.4871))[None]
 
 
-def usable(growth: np.ndarray) -> np.ndarray:
+def usable(growth: np.ndarray, instead: float = -np.inf) -> np.ndarray:
     """Return growth rates with what is not a number out of the way."""
-    return np.where(np.isfinite(growth), growth, -np.inf)
+    return np.where(np.isfinite(growth), growth, instead)
 
 
 def fastest(waves: Waves, guide: Guide, low: np.ndarray, high: np.ndarray, watch: bool = True) -> Fastest:
@@ -44,35 +69,66 @@ def fastest(waves: Waves, guide: Guide, low: np.ndarray, high: np.ndarray, watch
 
     One array for both ends asks for directions alone. ``watch``: whether to look beside the directions of a guide.
     """
-    rows, alone = np.arange(waves.count), low is high
+    alone = low is high
+    led = guide.guided if alone else guide.ranked  # to the top of the highest hill, but for lower orders
     span = np.zeros(waves.count) if alone else np.log(high / low)
+    count = 1 if alone else FEW if led else COLUMNS
+    columns = [low * np.exp(span * part) for part in np.linspace(0, 1, count)]
+    if guide.ranked and not alone:
+        columns.append(guide.wavenumber(low, high))
+    directions = fan(FAN) if watch or not led else None
+    seen = Guess.joined([one for column in columns for one in looked(waves, guide, column, directions, led)])
+    rows, best = np.arange(waves.count), first(seen.rank)
+    stretch = np.maximum(span / COLUMNS / 2, np.finfo(float).tiny)
+    found = climbed(waves, seen.take(rows, best), stretch, low, high, alone)
+    if not watch or (alone and led):
+        return found
+    # Another hill may turn out higher once one is up there: the best guess that stands elsewhere is climbed too.
+    rank = np.where(elsewhere(seen, seen.take(rows, best), span / COLUMNS), seen.rank, -np.inf)
+    some = np.flatnonzero(rank.max(axis=1) > RIVAL * abs(seen.rank[rows, best]))
+    if some.size:
+        rival, low = seen.take(some, first(rank[some])), low[some]
+        other = climbed(waves.take(some), rival, stretch[some], low, low if alone else high[some], alone)
+        higher = other.growth > found.growth[some]
+        for f in fields(found):
+            getattr(found, f.name)[some[higher]] = getattr(other, f.name)[higher]
+    return found
 
-    def wavenumbers(count: int) -> np.ndarray:
-        return low[:, None] if alone else low[:, None] * np.exp(span[:, None] * np.linspace(0, 1, count))
 
-    directions, columns = fan(SPARSE if guide.guided else FAN), wavenumbers(FEW if guide.guided else COLUMNS)
-    turn, top = np.full(waves.count, np.pi / directions.size / 2), np.full(waves.count, -np.inf)
-    at, q = np.zeros(waves.count), low
-    if watch or not guide.guided:
-        growth = usable(waves.growth(np.broadcast_to(directions, (waves.count, directions.size)), columns[:, None, :]))
-        best = crested(growth).reshape(waves.count, -1).argmax(axis=1)
-        i, j = best // columns.shape[1], best % columns.shape[1]
-        top, at, q = growth[rows, i, j], directions[0, i], columns[rows, j]
-    columns = wavenumbers(COLUMNS)
-    guesses = [(*guide.directions(column), column) for column in columns.T] if guide.kind != "none" else []
-    if guesses:
-        angles = np.concatenate([a for a, _, _ in guesses], axis=1)
-        widths = np.concatenate([w for _, w, _ in guesses], axis=1)
-        values = np.repeat(columns, 2, axis=1)
-        found = usable(waves.growth(angles, values[..., None])[..., 0])
-        best = found.argmax(axis=1)
-        better = found[rows, best] > top
-        top, at, q, turn = (
-            np.where(better, new[rows, best], old)
-            for new, old in ((found, top), (angles, at), (values, q), (widths, turn))
-        )
-    stretch = span / (COLUMNS - 1) / 2
-    return climbed(waves, Fastest(top, q, at), turn, stretch, low, high, alone)
+def looked(waves: Waves, guide: Guide, wavenumber: np.ndarray, directions: np.ndarray | None, led: bool) -> list[Guess]:
+    """Return the guide's waves at a wavenumber, and the two highest hills of a fan of directions."""
+    ring, found = waves.at(wavenumber), []
+    if guide.kind != "none":
+        angles, widths = guide.directions(wavenumber)
+        growth = usable(ring.growth(angles))
+        found.append(Guess(growth, growth, angles, np.broadcast_to(wavenumber[:, None], growth.shape), widths))
+    if directions is not None:
+        growth = usable(ring.growth(directions))
+        rank, rows = growth if led else crested(growth), np.arange(waves.count)
+        one = first(rank)
+        apart = abs(turned(directions, directions.T)) > APART  # (direction, direction)
+        two = first(np.where(apart[one], rank, -np.inf))
+        i, width = np.stack([one, two], axis=1), np.array(np.pi / directions.size / 2)
+        picked = (rank[rows[:, None], i], growth[rows[:, None], i], directions[0, i], wavenumber[:, None], width)
+        found.append(Guess(*(np.broadcast_to(a, i.shape) for a in picked)))
+    return found
+
+
+def first(rank: np.ndarray) -> np.ndarray:
+    """Return the index of the highest rank of each point, the first one where roundings tell them apart."""
+    top = rank.max(axis=1, keepdims=True)
+    return (rank >= top - TIE * abs(usable(top, 0.0))).argmax(axis=1)
+
+
+def turned(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the angle between two directions, from -pi/2 to pi/2."""
+    return (one - other + np.pi / 2) % np.pi - np.pi / 2
+
+
+def elsewhere(seen: Guess, best: Guess, spacing: np.ndarray) -> np.ndarray:
+    """Return which of the waves stand on another hill than the best one, as far as direction and wavenumber tell."""
+    far = abs(np.log(seen.wavenumber / best.wavenumber[:, None])) > FAR * spacing[:, None]
+    return far & (spacing[:, None] > 0) | (abs(turned(seen.angle, best.angle[:, None])) > APART)
 
 
 def crested(growth: np.ndarray) -> np.ndarray:
@@ -84,77 +140,73 @@ def crested(growth: np.ndarray) -> np.ndarray:
     return np.where((growth >= left) & (growth >= right) & (bend < 0) & np.isfinite(top), top, growth)
 
 
-def climbed(
-    waves: Waves, start: Fastest, turn: np.ndarray, stretch: np.ndarray, low: np.ndarray, high: np.ndarray, alone: bool
-) -> Fastest:
+def climbed(waves: Waves, start: Guess, stretch: np.ndarray, low: np.ndarray, high: np.ndarray, alone: bool) -> Fastest:
     """Return the top of the hill on which a wave stands, or as far as `STEPS` lead; points leave when they are there.
 
-    At an end of the range of wavenumbers only the direction is moved.
+    Directions are counted in widths of the hill, logarithms of wavenumbers in ``stretch``. At an end of the range of
+    wavenumbers only the direction is moved.
     """
-    best = Fastest(start.growth.copy(), start.wavenumber.copy(), start.angle.copy())
-    top, every = Fastest(best.growth, best.wavenumber.copy(), best.angle.copy()), waves  # where the last steps lead
-    open_, n = np.arange(waves.count), 1 if alone else 3
-    centre, middle, floor, roof = best.angle.copy(), np.log(best.wavenumber), np.log(low), np.log(high)
-    for _ in range(STEPS):
-        rows = np.arange(open_.size)
-        angles = centre[:, None] + turn[:, None] * UNIT
-        logs = middle[:, None] + (stretch[:, None] * UNIT if n == 3 else 0.0)
-        inside = np.clip(logs, floor[:, None], roof[:, None])
-        values = np.exp(inside)
-        growth = usable(waves.growth(angles, values[:, None, :]))
-        found = growth.reshape(rows.size, -1).argmax(axis=1)
-        i, j = found // n, found % n
-        value = growth[rows, i, j]
-        better = value > best.growth[open_]
-        some = open_[better]
-        best.growth[some] = value[better]
-        best.angle[some], best.wavenumber[some] = angles[rows, i][better], values[rows, j][better]
-        cut, wave = (inside != logs).any(axis=1), inside[rows, j]
-        end = alone | (cut & ((wave == floor) | (wave == roof)))  # the wavenumber stays
-        across, along, gain, fine = newton(growth, np.where(end, j, n // 2), np.broadcast_to(end, rows.shape))
-        fine &= end | ~cut
-        reached = best.growth[open_]
-        last = fine & (gain <= TOLERANCE * abs(reached)) & (value >= reached - TOLERANCE * abs(reached))
-        last &= (abs(across) < 1) & (abs(along) < 1)
-        ahead = fine & (better | last)  # a window without a better wave was led astray: back to the best one
-        centre = np.where(ahead, centre + turn * across, best.angle[open_])
-        middle = np.where(ahead & ~end, middle + stretch * along, np.log(best.wavenumber[open_]))
-        middle = np.clip(middle, floor, roof)
-        near = np.where(ahead, (abs(across) < 1) & (abs(along) < 1), (i == 1) & (end | (j == n // 2)))
-        factor = np.where(near | ~better, 1 / SHRINK, np.where(ahead, 2.0, 1.0))  # a long slope is followed faster
-        turn, stretch = turn * factor, stretch * factor
-        done = open_[last]
-        top.angle[done], top.wavenumber[done] = centre[last], np.exp(middle[last])
-        keep = np.flatnonzero(~last)
-        if not keep.size:
+    found = Fastest(start.growth.copy(), start.wavenumber.copy(), start.angle.copy())
+    open_, trust, turn = np.arange(waves.count), np.ones(waves.count), start.width
+    angle, q = start.angle, start.wavenumber
+    ring, noise = waves.at(q, not alone), ROUNDING * waves.bound(high)
+    here, done = ring.peak(angle), np.zeros(waves.count, bool)
+    for step in range(STEPS):
+        pinned = alone | ((q <= low) & (here[2] < 0)) | ((q >= high) & (here[2] > 0))
+        across, along, length, gain, sure = newton(here, turn, stretch, pinned, trust)
+        last = ~(gain > TOLERANCE * abs(here[0]) + noise)
+        ahead = angle + turn * across
+        if not alone:
+            q_ahead = np.clip(q * np.exp(stretch * along), low, high)
+            ring = waves.at(q_ahead, True)
+        there = ring.peak(ahead)
+        better = (there[0] > here[0]) & ~done  # who is there does not move while others climb
+        angle, here = np.where(better, ahead, angle), np.where(better, there, here)
+        q = q if alone else np.where(better, q_ahead, q)
+        trust = np.where(better, np.where(sure, trust, 2 * trust), np.minimum(trust, length) / SHRINK)
+        done |= last
+        keep = np.flatnonzero(~done)
+        over = not keep.size or step == STEPS - 1
+        if keep.size > CROWD * done.size and not over:
+            continue
+        fine = here[0] >= found.growth[open_]  # not where derivatives left float64's range
+        for old, new in ((found.growth, here[0]), (found.wavenumber, q), (found.angle, angle % np.pi)):
+            old[open_[fine]] = new[fine]
+        if over:
             break
-        if keep.size < rows.size:
-            open_, waves = open_[keep], waves.take(keep)
-            centre, middle, floor, roof, turn, stretch = (a[keep] for a in (centre, middle, floor, roof, turn, stretch))
-    found = usable(every.growth(top.angle[:, None], top.wavenumber[:, None, None])[:, 0, 0])
-    better = found > best.growth
-    growth, q, angle = (
-        np.where(better, new, old)
-        for new, old in ((found, best.growth), (top.wavenumber, best.wavenumber), (top.angle, best.angle))
-    )
-    return Fastest(growth, q, angle % np.pi)
+        open_, here = open_[keep], here[:, keep]
+        waves, ring = (waves, ring.take(keep)) if alone else (waves.take(keep), ring)
+        angle, q, low, high, turn, stretch, trust, noise, done = (
+            a[keep] for a in (angle, q, low, high, turn, stretch, trust, noise, done)
+        )
+    return found
 
 
-def newton(growth: np.ndarray, column: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return the step to the top of the parabola through a window (in windows), its gain, and where it has one.
+def newton(
+    here: np.ndarray, turn: np.ndarray, stretch: np.ndarray, pinned: np.ndarray, trust: np.ndarray
+) -> tuple[np.ndarray, ...]:
+    """Return the step up in both units, its length and gain, and whether it ends on the top of a parabola.
 
-    Where ``end``, the parabola through the directions at one column alone.
+    The step is |H|^-1 g, H the Hessian and |H| that with its eigenvalues made positive: Newton's where growth is
+    concave, and uphill elsewhere; no longer than trusted.
     """
-    rows = np.arange(growth.shape[0])
-    f = growth if growth.shape[2] == 3 else np.repeat(growth, 3, axis=2)
+    _, a, q, aa, aq, qq = here
+    a, q = a * turn, np.where(pinned, 0.0, q * stretch)
+    aa, aq, qq = aa * turn**2, np.where(pinned, 0.0, aq * turn * stretch), np.where(pinned, -1.0, qq * stretch**2)
     with np.errstate(all="ignore"):
-        left, mid, right = (f[rows, i, column if growth.shape[2] == 3 else 1] for i in range(3))
-        g, gg = (right - left) / 2, right - 2 * mid + left
-        h, hh = (f[:, 1, 2] - f[:, 1, 0]) / 2, f[:, 1, 2] - 2 * f[:, 1, 1] + f[:, 1, 0]
-        gh = (f[:, 2, 2] - f[:, 2, 0] - f[:, 0, 2] + f[:, 0, 0]) / 4
-        h, hh, gh = np.where(end, 0.0, h), np.where(end, -1.0, hh), np.where(end, 0.0, gh)
-        determinant = gg * hh - gh * gh
-        fine = (gg < 0) & (determinant > 0) & np.isfinite(determinant)
-        across, along = (gh * h - hh * g) / determinant, (gh * g - gg * h) / determinant
-        across, along = (np.clip(np.where(fine, step, 0.0), -LONGEST, LONGEST) for step in (across, along))
-        return across, along, (g * across + h * along) / 2, fine
+        determinant, trace = aa * qq - aq * aq, aa + qq
+        size = np.where(determinant > 0, abs(trace), np.sqrt(trace * trace - 4 * determinant))  # |e1| + |e2|
+        # |H| = (H^2 + |det H| 1)/(|e1| + |e2|), whose determinant is |det H|
+        lift, one = abs(determinant), 1 / (size * abs(determinant))
+        A, B, C = aa * aa + aq * aq + lift, aq * trace, qq * qq + aq * aq + lift
+        across, along, steep = (C * a - B * q) * one, (A * q - B * a) * one, np.hypot(a, q)
+        flat = ~(np.isfinite(across) & np.isfinite(along))
+        if flat.any():
+            pull = np.where(steep > 0, trust / steep, 0.0)
+            across, along = np.where(flat, pull * a, across), np.where(flat, pull * q, along)
+        length = np.hypot(across, along)
+        sure = (determinant > 0) & (trace < 0) & (length <= trust) & ~flat
+        factor = np.where(length > trust, trust / length, 1.0)
+        across, along = across * factor, along * factor
+        gain = np.where(sure, (a * across + q * along) / 2, steep * trust)
+    return across, along, np.minimum(length, trust), gain, sure

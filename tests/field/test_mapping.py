@@ -134,6 +134,14 @@ def test_a_general_closure_goes_through_its_pencil():
     assert_allclose(ds.growth_rate, found, rtol=1e-4)  # directions 0.025 degrees apart
 
 
+def test_a_divergence_that_the_closure_does_not_allow_is_told():
+    field = uniform(0.3)
+    ds = field_map("rigid_plastic", field, COULOMB)
+    assert "At 144 points div u is more than errors of the gradients explain, up to 0.3 ||V||" in ds.attrs["answer"]
+    allowed = field_map("perturbed", field, PERTURBED), field_map("rigid_plastic", uniform(0.0), COULOMB)
+    assert not any("div u is more" in ds.attrs["answer"] for ds in allowed)
+
+
 def test_points_at_rest_without_pressure_or_without_values_are_masked_and_counted():
     field = uniform(n=20)
     u, p = field.values["u"].copy(), field.values["p"].copy()
