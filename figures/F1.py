@@ -16,14 +16,15 @@ LEVELS = (0.5, 1, 2, 4, 8)  # e-folds
 
 def draw(result: Result) -> tuple:
     run = result("N3")
-    figure = page(DOUBLE, 112)
+    figure = page(DOUBLE, 122)
+    bar = figure.add_axes((0.3, 0.09, 0.42, 0.018))
     parameters = {word: json.loads(run.attrs["parameters"])[word] for word in ("friction_angle", "epsilon")}
     told = []
     for column, time in enumerate(TIMES):
         ds = field_map("perturbed", read_field(run, time=time), parameters, duration=DURATION)
-        above, below = (figure.add_axes((0.08 + 0.48 * column, y, 0.42, 0.4)) for y in (0.58, 0.06))
+        above, below = (figure.add_axes((0.08 + 0.48 * column, y, 0.42, 0.36)) for y in (0.61, 0.16))
         field_verdicts(ds, above)
-        field_growth(ds, below, LEVELS)
+        field_growth(ds, below, LEVELS, bar=bar)
         above.set(title=f"$t$ = {time:g} s", xlabel="")
         if column:
             above.set(ylabel="")

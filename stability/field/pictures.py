@@ -33,7 +33,7 @@ def field_verdicts(ds: Dataset, ax: Axes) -> Any:
     return drawn
 
 
-def field_growth(ds: Dataset, ax: Axes, levels: Any, name: str = "grid_e_folds") -> Any:
+def field_growth(ds: Dataset, ax: Axes, levels: Any, name: str = "grid_e_folds", bar: Axes | None = None) -> Any:
     """Draw a variable of a field map in the colours of growth.
 
     Parameters
@@ -42,19 +42,21 @@ def field_growth(ds: Dataset, ax: Axes, levels: Any, name: str = "grid_e_folds")
     ax : axes
     levels : values, positive and increasing, at which the colour changes; all that is less is drawn as decay
     name : ``grid_e_folds``, ``growth_rate`` or ``grid_growth_rate``
+    bar : axes of the colour bar; None: they are taken from ``ax``
 
     Returns
     -------
-    what was drawn, for a colour bar
+    what was drawn
     """
     bounds = [-np.inf, *levels, np.inf]
     colours = ListedColormap([BELOW, *GROWTH[: len(levels)]])
     code = np.digitize(ds[name].values, bounds[1:-1]).astype(float)
     code[~(ds["verdict"].values > 0)] = np.nan
     drawn = coloured(ds, ax, code, colours, BoundaryNorm(np.arange(-0.5, len(levels) + 1), len(levels) + 1))
-    bar = ax.figure.colorbar(drawn, ax=ax, orientation="horizontal", pad=0.26, shrink=0.9)
-    bar.set_ticks([i + 0.5 for i in range(len(levels))], labels=[f"{v:g}" for v in levels])
-    bar.set_label(LABELS.get(name, name.replace("_", " ")).format(cells=float(ds.attrs["cells"])))
+    place: dict[str, Any] = {"cax": bar} if bar else {"ax": ax, "pad": 0.26, "shrink": 0.9}
+    scale = ax.figure.colorbar(drawn, orientation="horizontal", **place)
+    scale.set_ticks([i + 0.5 for i in range(len(levels))], labels=[f"{v:g}" for v in levels])
+    scale.set_label(LABELS.get(name, name.replace("_", " ")).format(cells=float(ds.attrs["cells"])))
     return drawn
 
 
