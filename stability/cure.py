@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from math import isfinite, nan, pi, sqrt
+from numbers import Real
 from typing import Any, NoReturn
 
 from stability import codegen
@@ -79,13 +80,17 @@ def smallest_cure(
     model = Model(closure, flow)
     own = [r.word for r in codegen.load(CLOSURES, closure, codegen.RECORDS)["PARAMETERS"]]
     record = model.parameters[meant(parameter, model.parameters, own)]
-    if not (isfinite(growth) and growth >= 0):
+    if not (isinstance(growth, Real) and isfinite(growth) and growth >= 0):
         raise SceneError(f"growth = {growth!r} 1/s lies outside [0, inf) 1/s")
     if not 1e-14 <= rtol < 1:
         raise SceneError(f"rtol = {rtol!r} lies outside [1e-14, 1): float64 holds no more digits")
     low, high = bracketed(record, bracket)
     if longest is not None and not (isfinite(longest) and longest > 0):
         raise SceneError(f"longest = {longest!r} m lies outside (0, inf) m")
+    if record.word in parameters:
+        raise SceneError(
+            f"{record.word} = {parameters[record.word]!r} is what is asked for: leave it out of parameters"
+        )
     at = Point(closure, flow, parameters, point, record.word, longest)
     at.base(sqrt(low) * sqrt(high))  # everything that is wrong with the question is said here
 

@@ -114,10 +114,13 @@ def fastest_of(found: Verdict) -> float:
 
 
 def endless(at: Point, value: float, wave: Wave) -> bool:
-    """Return whether a longer wave of that direction grows as fast: then no length is singled out."""
+    """Return whether a longer wave of that direction grows as fast, or none was looked at: no length is singled out."""
     rate, wavenumber, angle = wave
     if not isfinite(wavenumber):
         return False
+    scale = float(waves_of(at.base(value), 1).scale()[0])
+    if wavenumber <= at.lowest(value, scale) * (1 + 1e-9):
+        return True
     longer = eigenvalues(at.closure, at.flow, at.given(value), dict(at.point), wavenumber / LONGER, angle)
     return bool(longer[0].real >= ALIKE * rate)
 

@@ -103,10 +103,11 @@ def bracketed(record: Parameter, bracket: tuple[float, float] | None = None) -> 
     """Return the bracket, or a parameter's range of positive values where there is none; its open ends are left out."""
     if bracket is None:
         return max(record.low * (1 + INSIDE), WIDEST[0]), min(record.high * (1 - INSIDE), WIDEST[1])
-    low, high = bracket
+    pair = isinstance(bracket, tuple | list) and len(bracket) == 2 and all(isinstance(e, int | float) for e in bracket)
+    low, high = bracket if pair else (0.0, 0.0)
     if not 0 < low < high:
         raise SceneError(f"bracket = {bracket!r}: give two increasing positive numbers")
-    for end in bracket:
+    for end in (low, high):
         if problem := record.problem(end, "bracket"):
             raise SceneError(problem)
     return low, high

@@ -204,3 +204,25 @@ def test_a_part_of_the_word_will_do_where_one_parameter_of_the_closure_has_it():
 def test_a_question_without_meaning_is_refused(options, words):
     with pytest.raises(SceneError, match=words):
         smallest_cure("perturbed", "uniform_strain", STATE, {}, **options)
+
+
+def test_a_bound_on_growth_is_not_kept_where_growth_closes_in_on_a_direction_without_bound():
+    state = {"critical_friction": 0.5, "critical_pressure": 1, "critical_fraction": 0.6, "volume_fraction": 0.6,
+             "pressure": 0.5, "strain_rate": 1, "delta": 0.6324555320336759}  # fmt: skip
+    with pytest.raises(SceneError, match="no value tried"):
+        smallest_cure("critical_state", "uniform_fraction", state, {}, "hardening", growth=50, bracket=(1e-3, 1e3))
+
+
+def test_the_longest_wave_looked_at_is_no_band():
+    state = {"friction_angle": 34, "delta": 0.0, "strain_rate": 1e-3, "pressure": 1.0}
+    found = smallest_cure("perturbed", "uniform_strain", state, {}, "epsilon", growth=1.0, longest=0.1)
+    assert "ands of" not in str(found) and "no width is singled out" in str(found)
+
+
+@pytest.mark.parametrize("fault", [{"growth": None}, {"bracket": 1.0}, {"bracket": (1, 2, 3)}])
+def test_what_is_no_number_is_refused_in_words(fault):
+    state = {"friction_angle": 34, "delta": 0.0, "strain_rate": 1e-3, "pressure": 1.0}
+    with pytest.raises(SceneError, match=next(iter(fault))):
+        smallest_cure("perturbed", "uniform_strain", state, {}, "epsilon", **fault)
+    with pytest.raises(SceneError, match="leave it out"):
+        smallest_cure("perturbed", "uniform_strain", state | {"epsilon": 1e-3}, {}, "epsilon")

@@ -5,11 +5,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stability.verdict import KINEMATIC
+
 if TYPE_CHECKING:
     from xarray import Dataset
 
 FEW = 1.0  # e-folds: a wave that grows by less than e during the time stays what it was
 RESOLVED = 8.0  # cells a wavelength: what a second-order scheme carries with a few per cent of error
+LONGEST = 0.99  # of the longest wave looked at: the fastest one stands at the end of the search
 SURE, SMALL = 2.0, 0.01  # estimated errors, and parts of ||V||: a divergence beyond both is the field's, and matters
 WORTH = 0.01  # of the points: fewer are told by their count in the last sentence only
 
@@ -29,7 +32,7 @@ def field_answer(ds: "Dataset") -> str:
     judged = code > 0
     total = int(judged.sum())
     if not total:
-        return "No point could be judged. " + counted(ds)
+        return "No point could be judged. " + counted(ds, code.size)
     found = [f"{total} points were judged with {ds.attrs['closure']}."]
     for kind in (4, 3, 2, 1, 5):
         here = code == kind
@@ -38,21 +41,32 @@ def field_answer(ds: "Dataset") -> str:
             found.append(share + SAID[kind] + (detail(ds, here) if kind in (2, 3) else "") + ".")
     found.append(mesh_waves(ds, judged))
     found.append(divergence(ds, judged))
-    if "firm" in ds and (loose := int((judged & (ds["firm"].values.ravel() != 1)).sum())):
-        found.append(f"At {loose} points the verdict changes within the error bars of the field's gradients: "
-                     "there it is not decided.")  # fmt: skip
-    return " ".join(filter(None, [*found, counted(ds)]))
+    if "firm" in ds:
+        loose, blind = judged & (ds["firm"].values.ravel() != 1), np.isnan(ds["gradient_error"].values.ravel())
+        if n := int((loose & ~blind).sum()):
+            found.append(f"At {n} points the verdict changes within the error bars of the field's gradients: "
+                         "there it is not decided.")  # fmt: skip
+        if n := int((loose & blind).sum()):
+            found.append(f"At {n} points the wider stencil lacks values, and the gradients have no error estimate.")
+    return " ".join(filter(None, [*found, counted(ds, code.size - total)]))
 
 
 def detail(ds: "Dataset", here: np.ndarray) -> str:
     """Return how long the fastest waves are, in metres and in cells, and whether the mesh carries them."""
-    growth, length, cell = (ds[n].values.ravel()[here] for n in ("growth_rate", "wavelength", "grid_wavelength"))
+    names = ("growth_rate", "wavelength", "grid_wavelength", "strain_rate_norm")
+    growth, length, cell, norm = (ds[n].values.ravel()[here] for n in names)
     ratio = np.median(length / cell) * float(ds.attrs["cells"])
     if not ratio:
         return ", which is largest for the shortest waves: structures of a few cells are the equations', and their " \
                "width stays tied to the mesh"  # fmt: skip
     text = f"; the fastest one is {np.median(length):.3g} m long in the median ({ratio:.3g} cells, " \
            f"{np.median(growth):.3g} 1/s)"  # fmt: skip
+    if np.median(length) >= LONGEST * float(ds.attrs["longest"]):
+        if np.median(growth / norm) <= KINEMATIC:
+            rate = f"{np.median(growth):.3g} 1/s in the median"
+            return f"; what grows are the longest waves looked at, at {rate}, by the " \
+                   "kinematics of the flow itself and not by the closure"  # fmt: skip
+        return text + ", the longest looked at: growth rises towards long waves, for which the field is not uniform"
     if ratio >= RESOLVED:
         return text + ": bands of that width are the equations', and the mesh resolves them; narrower ones are not"
     return text + ", which this mesh does not resolve: bands of a few cells will narrow until cells are finer than that"
@@ -86,8 +100,10 @@ def divergence(ds: "Dataset", judged: np.ndarray) -> str:
            "the flow without its divergence. Choose a closure that allows one."  # fmt: skip
 
 
-def counted(ds: "Dataset") -> str:
-    """Return what was masked, by reason."""
+def counted(ds: "Dataset", left: int) -> str:
+    """Return what was masked, by reason; of a part of a field only how many points are left."""
     masked = json.loads(ds.attrs["masked"]) if isinstance(ds.attrs["masked"], str) else ds.attrs["masked"]
     told = ", ".join(f"{n} {why}" for why, n in masked.items() if n)
+    if left != sum(masked.values()):
+        return f"Not judged, or not of this part: {left}."
     return f"Not judged: {told}." if told else "Every point was judged."

@@ -1,9 +1,13 @@
 """The verdict on many base states at once, the fastest wave of each, and the fastest of the mesh's shortest waves.
 
 Stage 1  the leading symbol over all directions: does growth rise without bound, as |xi|^n with n > 0?
-Stage 2  elsewhere the growth of waves far beyond the scale at which lower orders matter, null directions included
+Stage 2  elsewhere the growth of waves far beyond the scale at which lower orders matter, null directions included: the
+         law of two such wavelengths
 Stage 3  the fastest wave of any length from the field's size down to that scale
 Stage 4  the fastest wave of the length that the mesh resolves least
+
+A point is undecided where no sign can be told from rounding, and where a constraint leaves a wave undetermined (a pole
+of the growth rate, which a search runs into or misses by chance).
 
 In float64 and over samples: `stability.well_posedness` decides single points in certified arithmetic.
 """
@@ -20,13 +24,16 @@ from stability.finite import leading
 from stability.model import Base
 
 ROUNDING = 1e-9  # of the largest root: a growing coefficient below this is rounding, as in `symbolmap`
-SHORT, SHORTER = 100.0, 1000.0  # times the scale: corrections to the law of short waves are then 1e-4 and 1e-6
+# Times the scale: corrections to the law of short waves are then 1e-4 and 1e-6, or 1e-2 and 1e-3 where they are linear.
+SHORT, SHORTER = 100.0, 1000.0
 # Times the scale: the search for the fastest wave ends there. At delta = 0 it lies at 0.8, and growth that approaches
 # a bound is within 1e-3 of it.
 REACH = 30.0
 NEAR = 1e-7  # of the largest eigenvalue: the roundings of a search, 1e-15 or so of it, are then 1e-8 of a growth rate
 NOISE = {True: 1e-13, False: 1e-11}  # of the largest eigenvalue: a sign below it is undecided; computed again, or not
 CODES = ("masked", "stable", "finite", "bounded", "ill-posed", "undecided")
+ILL, UNDECIDED = CODES.index("ill-posed"), CODES.index("undecided")
+SIXTH = 6  # exponents are fractions with denominators up to the number of modes or so
 
 
 @dataclass(frozen=True)
@@ -90,7 +97,7 @@ def judged(base: Base, count: int, longest: float, grid: np.ndarray) -> Judged:
     found.grid_angle[:] = np.rad2deg(mesh.angle)
     for name in ("code", "exponent", "coefficient"):
         getattr(found, name)[:] = getattr(short, name)
-    ill = short.code == 4
+    ill = short.code == ILL
     found.growth[ill], found.wavelength[ill], found.angle[ill] = np.inf, 0.0, np.rad2deg(short.angle[ill])
     some = np.flatnonzero(~ill)
     if some.size:
@@ -103,8 +110,13 @@ def judged(base: Base, count: int, longest: float, grid: np.ndarray) -> Judged:
         found.wavelength[some] = np.where(shortest, 0.0, 2 * np.pi / best.wavenumber)
         found.angle[some] = np.rad2deg(np.where(shortest, short.angle[some], best.angle))
         found.code[some] = np.where((short.code[some] == 1) & (found.growth[some] > 0), 2, short.code[some])
+        found.growth[some[states.poles(low[some], high)]] = np.nan
     lost = ~np.isfinite(found.grid_growth) | np.isnan(found.growth) | (found.growth == -np.inf)
-    found.code[lost] = CODES.index("undecided")
+    found.code[lost] = UNDECIDED
+    for values in (found.growth, found.wavelength, found.angle):
+        values[found.code == UNDECIDED] = np.nan
+    for angle in (found.angle, found.grid_angle):
+        angle %= 180
     return found
 
 
@@ -121,7 +133,7 @@ def short_waves(base: Base, waves: Waves, hint: Guide) -> Short:
         first = fastest(leading, hint.take(rest).leading(), unit, unit)
         grows = first.growth > ROUNDING * leading.bound(unit)
         some = rest[grows]
-        found.code[some], found.exponent[some] = 4, float(edge.exponent)
+        found.code[some], found.exponent[some] = ILL, float(edge.exponent)
         found.coefficient[some], found.angle[some] = first.growth[grows], first.angle[grows]
         rest = rest[~grows]
     if rest.size:
@@ -137,17 +149,16 @@ def limits(base: Base, waves: Waves, hint: Guide, some: np.ndarray, found: Short
     one, rough = settled(base, some, best, states.bound(q))
     grows, two = one > rough, np.full(some.size, np.nan)
     if grows.any():  # the law of those that grow, from a second wavenumber
-        q_two = SHORTER * found.scale[some[grows]]
-        other = states.take(grows)
-        two[grows] = settled(
-            base, some[grows], fastest(other, near.take(grows), q_two, q_two, watch=False), other.bound(q_two)
-        )[0]
+        some_, other, q_two = some[grows], states.take(grows), SHORTER * found.scale[some[grows]]
+        shorter = fastest(other, near.take(grows), q_two, q_two, watch=False)
+        two[grows] = settled(base, some_, shorter, other.bound(q_two))[0]
     with np.errstate(all="ignore"):
-        n = np.round(np.log(two / one) / np.log(SHORTER / SHORT)) + 0.0  # no negative zero
+        n = np.log(two / one) / np.log(SHORTER / SHORT)
+        n = np.round(SIXTH * n) / SIXTH + 0.0  # no negative zero
         found.exponent[some] = np.where(grows & (two > 0), n, np.nan)
-        found.coefficient[some] = np.where(grows & (two > 0), one * q**-n, np.nan)
-    found.code[some] = np.where(grows, 3, np.where(one > -rough, 5, 1))
-    found.code[some[~np.isfinite(one)]] = 5
+        found.coefficient[some] = np.where(grows & (two > 0), two * (SHORTER * found.scale[some]) ** -n, np.nan)
+    found.code[some] = np.where(grows, np.where(n > 0, ILL, 3), np.where(one > -rough, UNDECIDED, 1))
+    found.code[some[~np.isfinite(one)]] = UNDECIDED
     found.angle[some] = best.angle
 
 

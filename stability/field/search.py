@@ -13,15 +13,15 @@ import numpy as np
 from stability.field.guides import Guide
 from stability.field.waves import Waves
 
-FAN = 24  # directions of the half circle: growth varies over some 20 degrees
+FAN, FINE = 24, 72  # directions of the half circle: growth varies over some 20 degrees, with three modes over 5
 COLUMNS, FEW = 8, 5  # wavenumbers from end to end, without and with a guide to the best one
 STEPS = 24  # at most: curved ridges take up to twenty
 TOLERANCE = 1e-6  # of the growth rate: a step that promises less is the last one, and leaves an error of 1e-11 or so
 ROUNDING = 1e-13  # of the largest eigenvalue: gains below it cannot be seen
 SHRINK = 4.0  # of the trusted distance after a step that led down
 TIE = 1e-9  # of a growth rate: of hills that are equally high but for roundings, the first one is climbed
-APART, FAR = np.pi / 6, 1.5  # between hills at least: radians, or spacings of the wavenumbers looked at
-RIVAL = 0.5  # of the best guess: lower hills are not climbed
+APART, FAR = 1.5, 1.5  # between hills at least: spacings of the directions, or of the wavenumbers, looked at
+RIVAL = 0.5  # of the best guess: hills that are lower by more are not climbed
 CROWD = 0.7  # of the points, when more are still climbing none is left behind: taking some costs as much as a step
 
 
@@ -76,7 +76,8 @@ def fastest(waves: Waves, guide: Guide, low: np.ndarray, high: np.ndarray, watch
     columns = [low * np.exp(span * part) for part in np.linspace(0, 1, count)]
     if guide.ranked and not alone:
         columns.append(guide.wavenumber(low, high))
-    directions = fan(FAN) if watch or not led else None
+    fine = alone and waves.modes > 2  # with three modes hills stand as near as 5 degrees
+    directions = fan(FINE if fine else FAN) if watch or not led else None
     seen = Guess.joined([one for column in columns for one in looked(waves, guide, column, directions, led)])
     rows, best = np.arange(waves.count), first(seen.rank)
     stretch = np.maximum(span / COLUMNS / 2, np.finfo(float).tiny)
@@ -84,8 +85,10 @@ def fastest(waves: Waves, guide: Guide, low: np.ndarray, high: np.ndarray, watch
     if not watch or (alone and led):
         return found
     # Another hill may turn out higher once one is up there: the best guess that stands elsewhere is climbed too.
-    rank = np.where(elsewhere(seen, seen.take(rows, best), span / COLUMNS), seen.rank, -np.inf)
-    some = np.flatnonzero(rank.max(axis=1) > RIVAL * abs(seen.rank[rows, best]))
+    near = np.pi / (FAN if directions is None else directions.size)
+    rank = np.where(elsewhere(seen, seen.take(rows, best), near, span / COLUMNS), seen.rank, -np.inf)
+    top = seen.rank[rows, best]
+    some = np.flatnonzero(rank.max(axis=1) > top - RIVAL * abs(usable(top, 0.0)))
     if some.size:
         rival, low = seen.take(some, first(rank[some])), low[some]
         other = climbed(waves.take(some), rival, stretch[some], low, low if alone else high[some], alone)
@@ -106,9 +109,10 @@ def looked(waves: Waves, guide: Guide, wavenumber: np.ndarray, directions: np.nd
         growth = usable(ring.growth(directions))
         rank, rows = growth if led else crested(growth), np.arange(waves.count)
         one = first(rank)
-        apart = abs(turned(directions, directions.T)) > APART  # (direction, direction)
-        two = first(np.where(apart[one], rank, -np.inf))
-        i, width = np.stack([one, two], axis=1), np.array(np.pi / directions.size / 2)
+        hill = (rank >= np.roll(rank, 1, axis=1)) & (rank >= np.roll(rank, -1, axis=1))
+        hill[rows, one] = False
+        i = np.stack([one, first(np.where(hill, rank, -np.inf))], axis=1)
+        width = np.array(np.pi / directions.size / 2)
         picked = (rank[rows[:, None], i], growth[rows[:, None], i], directions[0, i], wavenumber[:, None], width)
         found.append(Guess(*(np.broadcast_to(a, i.shape) for a in picked)))
     return found
@@ -125,10 +129,10 @@ def turned(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return (one - other + np.pi / 2) % np.pi - np.pi / 2
 
 
-def elsewhere(seen: Guess, best: Guess, spacing: np.ndarray) -> np.ndarray:
+def elsewhere(seen: Guess, best: Guess, near: float, spacing: np.ndarray) -> np.ndarray:
     """Return which of the waves stand on another hill than the best one, as far as direction and wavenumber tell."""
     far = abs(np.log(seen.wavenumber / best.wavenumber[:, None])) > FAR * spacing[:, None]
-    return far & (spacing[:, None] > 0) | (abs(turned(seen.angle, best.angle[:, None])) > APART)
+    return far & (spacing[:, None] > 0) | (abs(turned(seen.angle, best.angle[:, None])) > APART * near)
 
 
 def crested(growth: np.ndarray) -> np.ndarray:

@@ -19,6 +19,8 @@ from stability.model import Base
 from stability.puiseux import Edge, polygon
 
 SIGN = (1, 1, -1, -1)  # of i^m, m even: real, m odd: imaginary
+POLES = 24  # directions looked at, at a third as many wavenumbers
+POLE, NEARLY = 1e-9, 1e-3  # parts of the largest value: smaller ones have no sign, or leave a mode nearly undetermined
 BLOCK = 2**15  # waves at once: their arrays stay in the caches
 ORDERS = ((0, 0), (0, 1), (1, 0), (0, 2), (1, 1), (2, 0))  # of derivatives by the logarithm of |xi| and by the angle
 
@@ -79,6 +81,21 @@ class Waves:
                     found, ratio if n - j == 1 else np.sqrt(ratio) if n - j == 2 else ratio ** (1 / (n - j))
                 )
         return found
+
+    def poles(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return where (point,) the coefficient of the highest power of lambda changes its sign among waves looked at.
+
+        There a mode goes to infinity: the constraints leave it undetermined. A coefficient whose imaginary part does
+        not vanish beside the real one keeps the mode finite.
+        """
+        top = Waves({(0, m): term for (j, m), term in self.terms.items() if j == self.modes})
+        angles, seen = np.linspace(0, np.pi, POLES, endpoint=False)[None], np.zeros((2, self.count), bool)
+        for part in np.linspace(0, 1, POLES // 3 if len(top.terms) > 1 else 1):
+            value = top.at(low * (high / low) ** part).coefficients(angles)[0]
+            size = abs(value.real).max(axis=1, keepdims=True)
+            real = abs(value.imag).max(axis=1) <= NEARLY * size[:, 0]
+            seen |= [real & (sign * value.real > POLE * size).any(axis=1) for sign in (1, -1)]
+        return seen[0] & seen[1]
 
     def powers(self, wavenumber: np.ndarray) -> list[np.ndarray]:
         """Return the powers of the wavenumber up to the highest that occurs."""
@@ -142,10 +159,13 @@ class Ring:
         count, found = self.parts[0].shape[-1], np.empty((self.parts[0].shape[-1], angle.shape[1]))
         step = max(1, BLOCK // angle.shape[1])
         for part in (slice(i, i + step) for i in range(0, count, step)):
-            found[part] = self.take(part)._growth(angle if angle.shape[0] == 1 else angle[part])
+            c = self.take(part).coefficients(angle if angle.shape[0] == 1 else angle[part])
+            with np.errstate(all="ignore"):
+                found[part] = roots.largest(list(c))
         return found
 
-    def _growth(self, angle: np.ndarray) -> np.ndarray:
+    def coefficients(self, angle: np.ndarray) -> np.ndarray:
+        """Return the coefficients (power of lambda, point, n) at angles (point or 1, n) in radians."""
         _, powers, _, _, count = self.parts[0].shape
         c = np.empty((powers, count, angle.shape[1]), complex)
         for part, table, (basis,) in zip((c.real, c.imag), self.parts, self.harmonics(angle, 0), strict=True):
@@ -154,8 +174,7 @@ class Ring:
                 part[:] = table[0].reshape(powers, len(shared), count).swapaxes(1, 2) @ shared
             else:
                 part[:] = np.einsum("jcnp,cnpd->jpd", table[0], basis)
-        with np.errstate(all="ignore"):
-            return roots.largest(list(c))
+        return c
 
     def peak(self, angle: np.ndarray) -> np.ndarray:
         """Return growth (1/s) and its derivatives in `ORDERS`, (6, point); zero those that the ring does not have."""
