@@ -11,7 +11,7 @@ from stability.field.reading import read_field
 
 TIMES = (0.02, 0.12)  # s: after the first transient, and with bands throughout
 DURATION = 0.025  # s, the paper's interval between two snapshots
-LEVELS = (0.5, 1, 2, 4, 8)  # e-folds
+LEVELS = (1, 2, 4, 8)  # e-folds
 
 
 def draw(result: Result) -> tuple:

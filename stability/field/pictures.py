@@ -12,9 +12,9 @@ from xarray import Dataset
 from stability.plotting import DECAY, GROWTH
 
 # By code: masked, stable, finite, bounded, ill-posed, undecided. They differ in lightness too.
-COLOURS = ("#ffffff", DECAY[-1], GROWTH[1], GROWTH[2], GROWTH[4], "#8c8c8c")
+COLOURS = ("#ffffff", DECAY[1], GROWTH[1], GROWTH[2], GROWTH[4], "#6e6e6e")
 WORDS = ("not judged", "stable", "finite waves grow", "short waves grow, bounded", "ill-posed", "undecided")
-BELOW = DECAY[-1]
+BELOW = DECAY[1]
 LABELS = {
     "grid_e_folds": "e-folds of waves of {cells:g} cells",
     "grid_growth_rate": "growth rate of waves of {cells:g} cells (1/s)",
@@ -49,7 +49,7 @@ def field_growth(ds: Dataset, ax: Axes, levels: Any, name: str = "grid_e_folds",
     what was drawn
     """
     bounds = [-np.inf, *levels, np.inf]
-    colours = ListedColormap([BELOW, *GROWTH[: len(levels)]])
+    colours = ListedColormap([BELOW, *GROWTH[-len(levels) :]])
     code = np.digitize(ds[name].values, bounds[1:-1]).astype(float)
     code[~(ds["verdict"].values > 0)] = np.nan
     drawn = coloured(ds, ax, code, colours, BoundaryNorm(np.arange(-0.5, len(levels) + 1), len(levels) + 1))
