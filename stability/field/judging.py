@@ -32,7 +32,7 @@ REACH = 30.0
 NEAR = 1e-7  # of the largest eigenvalue: the roundings of a search, 1e-15 or so of it, are then 1e-8 of a growth rate
 NOISE = {True: 1e-13, False: 1e-11}  # of the largest eigenvalue: a sign below it is undecided; computed again, or not
 CODES = ("masked", "stable", "finite", "bounded", "ill-posed", "undecided")
-ILL, UNDECIDED = CODES.index("ill-posed"), CODES.index("undecided")
+_, STABLE, FINITE, BOUNDED, ILL, UNDECIDED = range(len(CODES))
 SIXTH = 6  # exponents are fractions with denominators up to the number of modes or so
 
 
@@ -109,7 +109,8 @@ def judged(base: Base, count: int, longest: float, grid: np.ndarray) -> Judged:
         found.growth[some] = np.where(shortest, short.coefficient[some], growth)
         found.wavelength[some] = np.where(shortest, 0.0, 2 * np.pi / best.wavenumber)
         found.angle[some] = np.rad2deg(np.where(shortest, short.angle[some], best.angle))
-        found.code[some] = np.where((short.code[some] == 1) & (found.growth[some] > 0), 2, short.code[some])
+        band = (short.code[some] == STABLE) & (found.growth[some] > 0)
+        found.code[some] = np.where(band, FINITE, short.code[some])
         found.growth[some[states.poles(low[some], high)]] = np.nan
     lost = ~np.isfinite(found.grid_growth) | np.isnan(found.growth) | (found.growth == -np.inf)
     found.code[lost] = UNDECIDED
@@ -124,14 +125,14 @@ def short_waves(base: Base, waves: Waves, hint: Guide) -> Short:
     """Return what short waves do at every point: stages 1 and 2."""
     count, one = waves.count, np.ones(waves.count)
     scale, nan = waves.scale(), np.full(count, np.nan)
-    found = Short(np.ones(count, int), nan, nan.copy(), np.zeros(count), scale)
+    found = Short(np.full(count, STABLE), nan, nan.copy(), np.zeros(count), scale)
     rest = np.arange(count)
     for edge in [] if hint.never else waves.edges:
         if not rest.size:
             return found
-        leading, unit = waves.along(edge).take(rest), one[rest]
-        first = fastest(leading, hint.take(rest).leading(), unit, unit)
-        grows = first.growth > ROUNDING * leading.bound(unit)
+        edged, unit = waves.along(edge).take(rest), one[rest]
+        first = fastest(edged, hint.take(rest).leading(), unit, unit)
+        grows = first.growth > ROUNDING * edged.bound(unit)
         some = rest[grows]
         found.code[some], found.exponent[some] = ILL, float(edge.exponent)
         found.coefficient[some], found.angle[some] = first.growth[grows], first.angle[grows]
@@ -157,7 +158,7 @@ def limits(base: Base, waves: Waves, hint: Guide, some: np.ndarray, found: Short
         n = np.round(SIXTH * n) / SIXTH + 0.0  # no negative zero
         found.exponent[some] = np.where(grows & (two > 0), n, np.nan)
         found.coefficient[some] = np.where(grows & (two > 0), two * (SHORTER * found.scale[some]) ** -n, np.nan)
-    found.code[some] = np.where(grows, np.where(n > 0, ILL, 3), np.where(one > -rough, UNDECIDED, 1))
+    found.code[some] = np.where(grows, np.where(n > 0, ILL, BOUNDED), np.where(one > -rough, UNDECIDED, STABLE))
     found.code[some[~np.isfinite(one)]] = UNDECIDED
     found.angle[some] = best.angle
 
